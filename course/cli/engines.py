@@ -277,7 +277,19 @@ def _show(console: Console, comparison: Comparison, findings: Sequence[str]) -> 
             _scenario(console, scenario, rows, best)
     if best and not console.quiet:
         console.line("best: nearest the truth, or where more is better the most; ties within half its range.")
-    _troubles(console, comparison)
+    said: set[tuple[str, str]] = set()
+    for row in comparison.rows:  # those without a number, and why
+        if row.status in ("ok", "not_installed", "not_applicable"):
+            continue
+        where = "" if row.status == "unavailable" else f" in {row.scenario} ({row.setting})"
+        text = f"{ENGINES[row.engine].name} {_STATUS[row.status]}{where}: {row.message}"
+        if (row.engine, text) not in said:
+            said.add((row.engine, text))
+            console.line(text)
+    for state in comparison.engines:
+        if state.version is None:
+            command = f": {state.command}" if state.command else "."
+            console.line(f"{state.name}: {state.missing}{command}")
     _origins(console, comparison)
     if findings:
         console.heading("What this shows")
@@ -293,6 +305,8 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
     steps = sorted({row.dt for row in rows}, reverse=True)
     lines = []
     for dt in steps:
+        whole = math.isclose(1.0 / dt, round(1.0 / dt), rel_tol=1e-6)
+        step = [f"1/{1.0 / dt:.0f} s" if whole else f"{dt:g} s"] if len(steps) > 1 else []
         found: dict[tuple[str, bool], dict[Setting, str]] = {}  # by engine, and whether from the reference
         for row in (row for row in rows if row.dt == dt):
             cells = found.setdefault((row.engine, row.origin == "reference"), {})
@@ -301,7 +315,6 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
             if not origin and (engine, True) in found:
                 continue  # what has a reference is not listed as missing too
             name = ENGINES[engine].name + (", reference" if origin else "")
-            step = [_shown_step(dt)] if len(steps) > 1 else []
             well_set = _tuned(cells, rows, engine, dt)
             lines.append((_truth(scenario), name, *step, cells.get(DEFAULT, ""), well_set))
     heads = ("Truth", "Engine", *(["Step"] if len(steps) > 1 else []), "As it comes", "Well set")
@@ -390,28 +403,6 @@ def _short(value: float) -> str:
 
 def _unit(text: str, scenario: Scenario) -> str:
     return text if scenario.unit == "1" else f"{text}{'' if scenario.unit == 'x' else ' '}{scenario.unit}"
-
-
-def _shown_step(dt: float) -> str:
-    rate = 1.0 / dt
-    return f"1/{rate:.0f} s" if math.isclose(rate, round(rate), rel_tol=1e-6) else f"{dt:g} s"
-
-
-def _troubles(console: Console, comparison: Comparison) -> None:
-    """The rows without a number, and why; and the command that installs what is missing."""
-    said: set[tuple[str, str]] = set()
-    for row in comparison.rows:
-        if row.status in ("ok", "not_installed", "not_applicable"):
-            continue
-        where = "" if row.status == "unavailable" else f" in {row.scenario} ({row.setting})"
-        text = f"{ENGINES[row.engine].name} {_STATUS[row.status]}{where}: {row.message}"
-        if (row.engine, text) not in said:
-            said.add((row.engine, text))
-            console.line(text)
-    for state in comparison.engines:
-        if state.version is None:
-            command = f": {state.command}" if state.command else "."
-            console.line(f"{state.name}: {state.missing}{command}")
 
 
 def _origins(console: Console, comparison: Comparison) -> None:

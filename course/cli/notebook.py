@@ -233,9 +233,6 @@ def check(
     return console.answer(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
 
 
-# -- writing ---------------------------------------------------------------------------------------------
-
-
 def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, executed: bool) -> int:
     from course.notebooks.magic import nbgrader_notebook
 
@@ -268,14 +265,12 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
         files.append(put(folder, notebook))
         console.line(_sentence(folder, files[-1]))
     changed = sum(file.action != "current" for file in files)
-    new = f"{changed} of them new or changed"
-    if len(files) == 1:
-        new = "new or changed" if changed else "not changed"
+    only = "new or changed" if changed else "not changed"
+    new = only if len(files) == 1 else f"{changed} of them new or changed"
     console.line((f"{counted(len(files), 'notebook')} in {folder}, {new}.", "bold"))
-    if find_spec("jupyterlab"):
-        console.note(f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}")
-    else:
-        console.note("Open them in any program for Jupyter notebooks; `course open` needs JupyterLab.")
+    lab = f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}"
+    other = "Open them in any program for Jupyter notebooks; `course open` needs JupyterLab."
+    console.note(lab if find_spec("jupyterlab") else other)
     return console.answer(Notebook(course=catalog.ref, folder=str(folder), files=tuple(files)))
 
 

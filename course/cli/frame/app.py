@@ -131,8 +131,13 @@ def _dispatch(line: Line, console: Console) -> int:
         console.line(f"course {__version__} (Python {python})")
         console.emit(Version(version=__version__, python=python))
         return 0
-    if line.settings.directory is not None:
-        _enter(line.settings.directory)
+    if (directory := line.settings.directory) is not None:
+        try:
+            os.chdir(directory)
+        except OSError as error:
+            problem = f"-C names {directory}, which cannot be entered ({error.strerror})."
+            fix = "Name a folder that exists."
+            raise NotFoundError(problem, help=fix, code="directory_not_found") from error
     if line.rest[:1] in {("--show-completion",), ("--install-completion",)} and len(line.rest) == 2:
         return _completion(console, *line.rest)
     if not console.json:
@@ -200,14 +205,6 @@ def _completion(console: Console, option: str, shell: str) -> int:
     return 0
 
 
-def _enter(directory: str) -> None:
-    try:
-        os.chdir(directory)
-    except OSError as error:
-        problem = f"-C names {directory}, which cannot be entered ({error.strerror})."
-        raise NotFoundError(problem, help="Name a folder that exists.", code="directory_not_found") from error
-
-
 def _say(
     console: Console,
     line: Line,
@@ -250,21 +247,15 @@ def _usage(console: Console, line: Line, error: Any) -> int:
     message = str(error.format_message()).strip()
     for theirs, ours in (("a valid float", "a number"), ("a valid integer", "a whole number")):
         message = message.replace(f"is not {theirs}", f"is not {ours}")
-    choices = _choices(error, context)
-    known = f"Known: {', '.join(choices)}. " if choices else ""
+    choices: list[str] = []
+    if (missing := getattr(error, "param", None)) and type(error).__name__.startswith("MissingParameter"):
+        # What could stand where an argument or an option is missing: what the shell would complete there.
+        choices = [str(item.value) for item in missing.shell_complete(context, "")] if context else []
+    known = f"Known: {', '.join(choices)}. " if 0 < len(choices) <= _MOST_CHOICES else ""
     return _say(console, line, UsageError.exit_code, "usage", message, f"{known}See `{path} --help`.")
 
 
 _MOST_CHOICES = 20
-
-
-def _choices(error: Any, context: Any) -> list[str]:
-    """What could stand where an argument or an option is missing: what the shell would complete there."""
-    param = getattr(error, "param", None)
-    if param is None or context is None or not type(error).__name__.startswith("MissingParameter"):
-        return []
-    found = [str(item.value) for item in param.shell_complete(context, "")]
-    return found if len(found) <= _MOST_CHOICES else []
 
 
 # ---

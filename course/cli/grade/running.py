@@ -105,7 +105,12 @@ def run(
         graders = _graders(jobs, local_cluster, scheduler)
         with graders as grade, _progress(console, catalog.ref, reached) as report:
             summary = grade_class(submissions, out, catalog, mine, report, grade=grade)
-            return summary, _would_change(console, summary, out, catalog, terms, grade)
+            if not summary.edited:
+                return summary, None
+            # Who would get another score from the present graders, which a resumed run does not use.
+            again = RerunOptions(dry_run=True, level=level, at_least=at_least)
+            with open_results(out) as book, console.working("Grading with the edited graders, to compare"):
+                return summary, regrade(book, catalog, again, grade=grade)
 
     try:
         summary, tried = opt.agreed(console, grading, yes=yes)
@@ -126,17 +131,6 @@ def _interrupted(reached: list[int], out: Path) -> CourseError:
         told = CourseError(message, help="The same command with --resume goes on.", code="interrupted")
     told.exit_code = INTERRUPTED
     return told
-
-
-def _would_change(
-    console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
-) -> Regraded | None:
-    """The students who would get another score from the present graders, which a resumed run does not use."""
-    if not summary.edited:
-        return None
-    options = RerunOptions(dry_run=True, level=terms.level, at_least=terms.at_least)
-    with open_results(out) as results, console.working("Grading with the edited graders, to compare"):
-        return regrade(results, catalog, options, grade=grade)
 
 
 def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out: Path) -> None:
@@ -319,15 +313,12 @@ def _progress(
             elif advance is not None:
                 advance(done, total, "graded")
             elif not console.quiet:
-                console.line(_graded(result, done, total))
+                verdict, about = result.verdict, f"{one_line(result.student)} {result.exercise}"
+                scored = f"{verdict.score:g}/{verdict.max_score:g}"
+                ending = scored if verdict.error is None else verdict.error.code
+                console.line(f"{done}/{total} {about} {verdict.state} {ending}")
 
         yield report
-
-
-def _graded(result: Effective, done: int, total: int) -> str:
-    verdict = result.verdict
-    ending = f"{verdict.score:g}/{verdict.max_score:g}" if verdict.error is None else verdict.error.code
-    return f"{done}/{total} {one_line(result.student)} {result.exercise} {verdict.state} {ending}"
 
 
 def _show_summary(

@@ -342,8 +342,6 @@ class Learning:
         self.mistakes = tuple(self._mistakes(standing.mistakes))
         self.revisit = tuple(self._revisit())
 
-    # -- predictions -----------------------------------------------------------------------------------
-
     def _predictions(self, said: Sequence[RecordedPrediction]) -> replies.PredictionsState:
         lessons = [one for one in self._catalog.lesson_ids() if any(each.lesson == one for each in said)]
         days = sorted({_day(one) for one in said})
@@ -377,8 +375,6 @@ class Learning:
         where = f"{said.lesson}#{section.slug}" if section else ""
         return {"section": where, "question": asked.words if asked else ""}
 
-    # -- mistakes --------------------------------------------------------------------------------------
-
     def _mistakes(self, made: Sequence[Mistake]) -> Iterable[replies.MistakeState]:
         known = {one.id: one for one in (*self._catalog.exercises(), *self._catalog.warm_ups())}
         for one in made:
@@ -396,8 +392,6 @@ class Learning:
                 mended_at=one.mended.isoformat() if one.mended else None,
                 given=one.diagnosis in {task.fault for task in exercise.task if task.id == one.task},
             )
-
-    # -- what to read again ----------------------------------------------------------------------------
 
     def _revisit(self) -> Iterable[replies.Revisit]:
         why: dict[str, list[str]] = {}
@@ -426,8 +420,14 @@ class Learning:
 
 def show_learning(console: Console, learning: Learning) -> None:
     """Print what there is; nothing for a student who predicted nothing and made no mistake."""
-    if learning.predictions is not None:
-        _show_predictions(console, learning.predictions)
+    if (said := learning.predictions) is not None:
+        console.heading("Predictions", f"{said.all.said} made, {said.all.skipped} skipped")
+        days = said.by_day[-_DAYS:]
+        for one in (*said.by_lesson, *(days if len(days) > 1 else ())):
+            numbers = (one.right, one.nearly, one.wrong, one.unjudged, one.skipped)
+            named = zip(numbers, ("right", "nearly right", "wrong", "not compared", "skipped"), strict=True)
+            words = ", ".join(f"{number} {word}" for number, word in named if number)
+            console.line(f"{one.of}: {words}", indent=2)
     made, given = ([one for one in learning.mistakes if one.given == of] for of in (False, True))
     _show_mistakes(console, "Mistakes", "made", made)
     _show_mistakes(console, "Faults in the programs you were given", "found by a check", given)
@@ -452,14 +452,6 @@ def _reasons(learning: Learning, section: str) -> str:
     return "; ".join(reasons)
 
 
-def _show_predictions(console: Console, predictions: replies.PredictionsState) -> None:
-    whole = predictions.all
-    console.heading("Predictions", f"{whole.said} made, {whole.skipped} skipped")
-    days = predictions.by_day[-_DAYS:]
-    for one in (*predictions.by_lesson, *(days if len(days) > 1 else ())):
-        console.line(f"{one.of}: {_in_words(one)}", indent=2)
-
-
 #: So many mistakes that are open and so many that are mended are shown, the newest of each.
 _OPEN, _MENDED = 5, 3
 
@@ -481,13 +473,6 @@ def _show_mistakes(console: Console, what: str, done: str, mistakes: Sequence[re
         console.line(f"{one.title} ({one.exercise}), {state}: {words}", indent=2)
     if len(shown) < len(mistakes):
         console.line(f"And {len(mistakes) - len(shown)} more, in `course progress --json`.", indent=2)
-
-
-def _in_words(counts: replies.PredictionsOf) -> str:
-    """ "3 right, 1 nearly, 1 wrong, 1 skipped"; zero counts are left out."""
-    numbers = (counts.right, counts.nearly, counts.wrong, counts.unjudged, counts.skipped)
-    named = zip(numbers, ("right", "nearly right", "wrong", "not compared", "skipped"), strict=True)
-    return ", ".join(f"{number} {word}" for number, word in named if number)
 
 
 def _looks_like(exercise: Exercise, mistake: Mistake) -> str:

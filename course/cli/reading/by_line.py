@@ -29,6 +29,8 @@ from course.reading.record import JUDGEMENTS, InProgress, Place, find
 
 _ON_WORDS, _STOP = ("", "y", "yes", "n", "next"), ("q", "quit", "no")
 _ON = "Enter goes on"
+#: Commands while a prediction is open; everything else is the prediction.
+_LEADS_ELSEWHERE = re.compile(r"[?bt]|g \d+|/.+|course .+")
 #: After this time a running cell is announced, in s.
 _PATIENCE = 1.0
 _WORDS = (
@@ -175,7 +177,7 @@ class LineReader:
 
     def _predict(self, question: Question, number: int) -> int | None:
         ask = "Your prediction; Enter skips it: "
-        while (typed := self._console.ask(ask)) is not None and _leads_elsewhere(typed):
+        while (typed := self._console.ask(ask)) is not None and _LEADS_ELSEWHERE.fullmatch(typed):
             leads = self._do(typed, number)
             if leads is not None:
                 return leads
@@ -346,11 +348,6 @@ class LineReader:
     def _write(self, kind: str, subject: str, data: Mapping[str, object]) -> None:
         if self._here is not None:
             self._here.record(kind, subject, dict(data))
-
-
-def _leads_elsewhere(typed: str) -> bool:
-    """Whether a word is a command while a prediction is open; everything else is the prediction."""
-    return typed in {"?", "b", "t"} or re.fullmatch(r"g \d+|/.+|course .+", typed) is not None
 
 
 def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:

@@ -248,7 +248,12 @@ def play(console: Console, options: PlayOptions) -> int:
         problem = f"--at {options.at:g}: the run ends at {end:g} s."
         fix = f"Take a time up to {end:g}, or a longer --duration."
         raise UsageError(problem, help=fix, code="bad_parameter")
-    given = _given_guess(picked, options)
+    given = None
+    if options.guess is not None:  # with comma or point, with its unit or without
+        asked = picked.scene.prediction
+        if (given := guess_of(options.guess, asked.unit if asked is not None else "")) is None:
+            said = f"--guess {options.guess} is not a number, or one too large."
+            raise UsageError(said, help=GUESS_LIKE, code="bad_parameter")
     if lines := unwritten(picked.path):
         left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"
         console.note(f"{picked.path}:{lines[0]}: this line {left} still to be written.")
@@ -275,18 +280,6 @@ def _check(options: PlayOptions) -> None:
         raise UsageError("--every says how far apart the samples of --csv are.", help="Add --csv FILE.")
     if options.port and not options.web:
         raise UsageError("--port says where the page of --web is.", help="Add --web.")
-
-
-def _given_guess(chosen: Chosen, options: PlayOptions) -> float | None:
-    """The guess of the command line, with comma or point, with its unit or without."""
-    if options.guess is None:
-        return None
-    asked = chosen.scene.prediction
-    guess = guess_of(options.guess, asked.unit if asked is not None else "")
-    if guess is None:
-        said = f"--guess {options.guess} is not a number, or one too large."
-        raise UsageError(said, help=GUESS_LIKE, code="bad_parameter")
-    return guess
 
 
 def _guess(console: Console, chosen: Chosen, given: float | None) -> float | None:
@@ -443,11 +436,13 @@ def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], op
         for sentence in told:
             console.line(sentence)
         for probe in chosen.scene.probe:
-            value = done.probes[probe.name]
-            unit = f" {probe.unit}" if probe.unit else ""
-            console.line(f"{probe.name}: {'did not happen' if math.isnan(value) else f'{value:.6g}{unit}'}")
+            console.line(f"{probe.name}: {_happened(done.probes[probe.name], probe.unit)}")
     _show_comparison(console, done.comparison)
     console.note(("Think: ", "bold"), chosen.scene.after)
+
+
+def _happened(value: float, unit: str) -> str:
+    return "did not happen" if math.isnan(value) else f"{value:.6g} {unit}".rstrip()
 
 
 def _show_comparison(console: Console, comparison: Comparison | None) -> None:
@@ -458,10 +453,8 @@ def _show_comparison(console: Console, comparison: Comparison | None) -> None:
         rows = [("theory", comparison.theory), ("simulation", comparison.simulation)]
         if comparison.guess is not None:
             rows.insert(0, ("your guess", comparison.guess))
-        unit = "" if comparison.unit == "1" else f" {comparison.unit}"
         for name, value in rows:
-            shown = "did not happen" if math.isnan(value) else f"{value:.6g}{unit}"
-            console.item(name, shown, width=10)
+            console.item(name, _happened(value, "" if comparison.unit == "1" else comparison.unit), width=10)
     console.line((comparison.verdict, "bold"))
     console.note(comparison.why)
 

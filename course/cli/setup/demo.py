@@ -212,7 +212,13 @@ def _show_fixed(
     console.blank()
     console.heading("3. What the mistake hid")
     _draw(console, before, after)
-    console.line(_said(before, after))
+    low, high = before.energy
+    console.line(
+        f"Explicit Euler gains energy: over {STEP * STEPS:g} s of this spring, the fixed function's energy "
+        f"grows to {after.energy[1]:.2f} times its initial value. With the mistake it stays between "
+        f"{low:.2f} and {high:.2f} times that value, because it turned the steps into those of "
+        "another method. Explicit Euler would have looked better than it is."
+    )
 
 
 def _say_next(console: Console) -> None:
@@ -241,17 +247,6 @@ def _change(before: str, after: str) -> tuple[str, ...]:
     changed = [line for line in lines if line[:2] in {"- ", "+ "}]
     margin = min(len(line) - 2 - len(line[2:].lstrip()) for line in changed)
     return tuple(line[:2] + line[2 + margin :] for line in changed)
-
-
-def _said(before: _Motion, after: _Motion) -> str:
-    """The picture in words, with its numbers."""
-    low, high = before.energy
-    return (
-        f"Explicit Euler gains energy: over {STEP * STEPS:g} s of this spring, the fixed function's energy "
-        f"grows to {after.energy[1]:.2f} times its initial value. With the mistake it stays between "
-        f"{low:.2f} and {high:.2f} times that value, because it turned the steps into those of "
-        "another method. Explicit Euler would have looked better than it is."
-    )
 
 
 def _draw(console: Console, before: _Motion, after: _Motion) -> None:

@@ -102,7 +102,10 @@ def doctor(
     complete = not any(item.group == "" and not item.ok for item in found) and not trouble
     _fact("Course", f"{catalog.title} {catalog.version}, installed as a {kind}")
     _fact("Python", f"{platform.python_version()} at {sys.executable}, {platform.platform()}")
-    _fact("Packages", _in_words(found))
+    there = [one for one in found if one.ok or not one.group]  # with what is missing of the base
+    needs = ["" if one.ok else f" (needs {one.requirement})" for one in there]
+    named = (f"{one.name} {one.installed or 'MISSING'}{more}" for one, more in zip(there, needs, strict=True))
+    _fact("Packages", ", ".join(named))
     _fact("Protection", f"{level}: {_LEVELS[level]}" if level in _LEVELS else level)
     for sentence in (*causes, *advice):
         console.line(sentence, indent=2)
@@ -215,15 +218,6 @@ def terminal(console: Console) -> dict[str, str]:
         "colour": "on" if console.fancy and not os.environ.get("NO_COLOR") else "off",
         "encoding": getattr(sys.stdout, "encoding", None) or "unknown",
     }
-
-
-def _in_words(found: Iterable[Package]) -> str:
-    """What is installed, and what is missing of the base."""
-    return ", ".join(
-        f"{item.name} {item.installed or 'MISSING'}" + ("" if item.ok else f" (needs {item.requirement})")
-        for item in found
-        if item.ok or not item.group
-    )
 
 
 # ---

@@ -328,26 +328,20 @@ def _judged(
         console.line(_flowing(paragraph))
         console.blank()
     console.heading("What to grade yours by", "yes, partly or no")
+    chosen_grades = before
     if grades is not None:
-        chosen_grades = _parsed(grades, rubric)
+        chosen_grades = tuple(word.strip().lower() for word in grades.split(","))
+        if len(chosen_grades) != len(rubric.points) or not set(chosen_grades) <= set(GRADES):
+            problem = f"--grades takes {len(rubric.points)} of yes, partly and no, joined by commas."
+            raise UsageError(problem, help=f"For example: --grades {','.join(['yes'] * len(rubric.points))}")
     elif console.interactive and not before:
         chosen_grades = _asked(console, rubric)
-    else:
-        chosen_grades = before
     for number, point in enumerate(rubric.points, 1):
         grade = f"  {chosen_grades[number - 1]}" if chosen_grades else ""
         console.line(f"{number}. {point}", (grade, "bold"), indent=2)
     if chosen_grades and chosen_grades != before:
         here.record(KIND, chosen.id, {"grades": list(chosen_grades)})
     return chosen_grades
-
-
-def _parsed(grades: str, rubric: Rubric) -> tuple[str, ...]:
-    given = tuple(word.strip().lower() for word in grades.split(","))
-    if len(given) != len(rubric.points) or not set(given) <= set(GRADES):
-        problem = f"--grades takes {len(rubric.points)} of yes, partly and no, joined by commas."
-        raise UsageError(problem, help=f"For example: --grades {','.join(['yes'] * len(rubric.points))}")
-    return given
 
 
 def _asked(console: Console, rubric: Rubric) -> tuple[str, ...]:

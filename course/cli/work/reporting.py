@@ -80,9 +80,7 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
             console.line(item.strip(), indent=2)
     if section.rows:
         console.table_or_facts(section.columns, section.rows)
-    figure = None
-    if section.plot is not None:
-        figure = _drawn(console, section.plot, path)
+    figure = _drawn(console, section.plot, path) if section.plot is not None else None
     description = section.plot.description if section.plot else ""
     return filled(SectionReply, section, figure=figure, description=description)
 

@@ -243,10 +243,33 @@ class ReaderApp(FullScreenApp):
     # -- finding -----------------------------------------------------------------------------------------
 
     def action_contents(self) -> None:
-        """The sections of this lesson, and the other lessons, with what is done."""
-        self.page.keep_place()
-        options, at = _contents(self.page)
-        self.push_screen(Choice(self.page.progress.script.lesson.title, options, at), self._chosen)
+        """The sections of this lesson with its tasks, and all lessons, with what is done."""
+        page = self.page
+        page.keep_place()
+        progress, script, options, at = page.progress, page.progress.script, list[tuple[str, str]](), ""
+        here = (page.place() or Place()).block
+        for section in script.sections:
+            done = progress.is_done(section.start, section.end)
+            asked = [q for q in script.questions if section.start <= q.index < section.end]
+            open_ = sum(progress.prediction(q) is None for q in asked)
+            more = f"   {open_} to predict" if open_ and section.level == 2 else ""
+            indent = "  " * (section.level - 2)
+            options.append(
+                (f"block:{section.start}", f"{'✓' if done else ' '} {indent}{section.title}{more}")
+            )
+            if section.start <= here and section.level == 2:
+                at = f"block:{section.start}"
+            for index, block in enumerate(script.blocks):
+                if isinstance(block, Task) and script.section_at(index) == section:
+                    mark = "✓" if page.practice.of(block.id).done else " "
+                    options.append(
+                        (f"block:{index}", f"{mark}   {block.what.partition(',')[0]}: {block.title}")
+                    )
+        options.append(("", ""))
+        for number, name in enumerate(page.catalog.lesson_ids(), start=1):
+            words = f"{'✓' if page.is_read(name) else ' '} {number}. {page.catalog.lesson(name).title}"
+            options.append((f"lesson:{name}", words))
+        self.push_screen(Choice(script.lesson.title, options, at), self._chosen)
 
     def _chosen(self, key: str | None) -> None:
         """Go where a list says: "block:12", "lesson:ID" or "lesson:ID:12"."""
@@ -285,31 +308,3 @@ class ReaderApp(FullScreenApp):
 
     def action_help(self) -> None:
         self.push_screen(TextOverlay("Keys", [keys_table(self.size.width)]))
-
-
-def _contents(page: Page) -> tuple[list[tuple[str, str]], str]:
-    """The sections of a lesson with its tasks, and all lessons, with what is done.
-
-    Returns:
-        (key, what to show) of each, and the key of where the reader is.
-    """
-    progress, script, options, at = page.progress, page.progress.script, list[tuple[str, str]](), ""
-    here = (page.place() or Place()).block
-    for section in script.sections:
-        done = progress.is_done(section.start, section.end)
-        asked = [q for q in script.questions if section.start <= q.index < section.end]
-        open_ = sum(progress.prediction(q) is None for q in asked)
-        more = f"   {open_} to predict" if open_ and section.level == 2 else ""
-        indent = "  " * (section.level - 2)
-        options.append((f"block:{section.start}", f"{'✓' if done else ' '} {indent}{section.title}{more}"))
-        if section.start <= here and section.level == 2:
-            at = f"block:{section.start}"
-        for index, block in enumerate(script.blocks):
-            if isinstance(block, Task) and script.section_at(index) == section:
-                mark = "✓" if page.practice.of(block.id).done else " "
-                options.append((f"block:{index}", f"{mark}   {block.what.partition(',')[0]}: {block.title}"))
-    options.append(("", ""))
-    for number, name in enumerate(page.catalog.lesson_ids(), start=1):
-        words = f"{'✓' if page.is_read(name) else ' '} {number}. {page.catalog.lesson(name).title}"
-        options.append((f"lesson:{name}", words))
-    return options, at

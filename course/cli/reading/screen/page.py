@@ -503,19 +503,16 @@ class Page(Widget):
         self._head = shortened(head, room)
         keys = fitting(self._keys_of(self), room, more=_ALL_KEYS)
         self._keys = shortened(self._told, room) if self._told else keys
-        self._position = self._where(book) if book.whole else ""
-        self._share = self.end() / max(1, len(book.layout)) if book.whole else 0.0
+        self._position, self._share = "", 0.0
+        if book.whole:  # which screen of how many, and the minutes left
+            layout, end = book.layout, self.end()
+            self._share = end / max(1, len(layout))
+            minutes = max(1, round(script.minutes_left((layout.rows[end - 1].block if end else 0) + 1)))
+            number, left = layout.number(self.top), f"{minutes} min left"
+            if end >= len(layout):
+                number, left = len(layout.starts), "the end"
+            self._position = f"{number} of {len(layout.starts)} · {left}"
         self.refresh()
-
-    def _where(self, book: Book) -> str:
-        """Which screen of how many, and the minutes left."""
-        layout, end = book.layout, self.end()
-        last = layout.rows[end - 1].block if end else 0
-        at_end = end >= len(layout)
-        minutes = max(1, round(self.progress.script.minutes_left(last + 1)))
-        left = "the end" if at_end else f"{minutes} min left"
-        number = len(layout.starts) if at_end else layout.number(self.top)
-        return f"{number} of {len(layout.starts)} · {left}"
 
     def tick(self) -> None:
         """From time to time: a message goes, a cell runs on, a task was saved in an editor."""

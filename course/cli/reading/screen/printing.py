@@ -193,16 +193,13 @@ class ScreenPrinter(FancyPrinter):
             made = self._block(block)
             shown += [Text(""), made] if made is not None else []
         standing = _standing_lines(now, task.id, possible=self._practice.possible)
+        shown.append(Text(""))
+        if not now.busy and (curves := (now.reply or {}).get("curves")):
+            # The first curve of the last check, drawn where there are pictures, and in words.
+            words = Text(curves[0]["description"], style="dim")
+            shown += [*self._picture(task.id, curves[0], self._prose), words, Text("")]
         # The finding comes last: it is what must be in sight.
-        return Group(*shown, Text(""), *self._curve_lines(now, task.id), *standing, self._rule(""))
-
-    def _curve_lines(self, now: Standing, task: str) -> list[Text]:
-        """The first curve of the last check, drawn where there are pictures, and in words."""
-        curves = (now.reply or {}).get("curves") or ()
-        if not curves or now.busy:
-            return []
-        words = Text(curves[0]["description"], style="dim")
-        return [*self._picture(task, curves[0], self._prose), words, Text("")]
+        return Group(*shown, *standing, self._rule(""))
 
     def _passage(self, kind: str, inner: tuple[b.Block, ...]) -> RenderableType:
         if kind == "predict":

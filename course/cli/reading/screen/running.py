@@ -303,7 +303,11 @@ class Practice:
             hint = reply.get("hint")
             now = replace(now, hint=f"Hint: {hint}" if hint else str(reply.get("message", "")))
         else:
-            fixed = () if "error" in reply else self._fixed(name)
+            fixed: tuple[str, ...] = ()
+            with contextlib.suppress(CourseError):  # the functions that the last edit fixed, by the record
+                if self._workspace is not None and "error" not in reply:
+                    history = history_of(self._workspace.store.events(subject=name))
+                    fixed = tuple(sorted(history.changed_tasks()[0]))
             now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")), fixed=fixed)
         self._standings[name] = now
         if not self._closed:
@@ -326,13 +330,6 @@ class Practice:
                 reply = {"error": {"message": f"`course {command} {name}` gave no answer.", "help": ""}}
         self._process = None
         return reply
-
-    def _fixed(self, name: str) -> tuple[str, ...]:
-        """The functions that the last edit fixed, by the record."""
-        assert self._workspace is not None
-        with contextlib.suppress(CourseError):
-            return tuple(sorted(history_of(self._workspace.store.events(subject=name)).changed_tasks()[0]))
-        return ()
 
     def _recorded(self, name: str) -> Standing:
         if self._workspace is None:

@@ -205,20 +205,13 @@ def _completion(console: Console, option: str, shell: str) -> int:
     return 0
 
 
-def _say(
-    console: Console,
-    line: Line,
-    exit_code: int,
-    code: str,
-    message: str,
-    help: str = "",  # noqa: A002
-) -> int:
+def _say(console: Console, line: Line, exit_code: int, code: str, message: str, advice: str = "") -> int:
     """Report an error in place of a result."""
-    console.error(message, help)
+    console.error(message, advice)
     if console.json and (console.streams or not console.emitted):
         from course.cli.frame.replies import ErrorBody, ErrorReply, schema_of_line
 
-        body = ErrorBody(code=code, message=message, help=help)
+        body = ErrorBody(code=code, message=message, help=advice)
         try:
             console.emit_line(ErrorReply(schema=schema_of_line(line), exit_code=exit_code, error=body))
         except OSError as full:  # a pipe that nobody reads is dealt with where the line began

@@ -292,7 +292,7 @@ def explain(
     if console.json:
         console.emit(grade_line(found, results.course))
     else:
-        _show_result(console, catalog, whose, found, history, decisions)
+        _show_result(catalog, whose, found, history, decisions)
     return 0
 
 
@@ -422,14 +422,9 @@ def show_unjudged(console: Console, sentences: Sequence[str]) -> None:
 
 
 def _show_result(
-    console: Console,
-    catalog: Catalog,
-    whose: str,
-    found: Effective,
-    history: list[Result],
-    decisions: list[Decision],
+    catalog: Catalog, whose: str, found: Effective, history: list[Result], decisions: list[Decision]
 ) -> None:
-    verdict, result = found.verdict, found.result
+    console, verdict, result = current(), found.verdict, found.result
     passed = "passed" if found.passed else "not passed"
     score = "none" if found.score is None else format_points(found.score)
     console.heading(f"{whose}, {found.exercise}", verdict.state)

@@ -211,7 +211,7 @@ def _inside(console: Console, here: Here) -> int:
         taken = quiz is not None and quiz.best is not None
         known = {one.id: f"{WORDS[one.state]} {score_of(one)}".rstrip() for one in states}
         evidence = {one.id: f"exercise {one.number}, {one.id}: {known[one.id]}" for one in states}
-        show_objectives(console, objectives, evidence, taken=taken)
+        show_objectives(objectives, evidence, taken=taken)
     elif states:
         rows = [(one.id, str(one.number), WORDS[one.state], score_of(one)) for one in states]
         console.table(("Exercise", "No.", "State", "Score"), rows)
@@ -528,11 +528,7 @@ def objective_states(
 
 
 def show_objectives(
-    console: Console,
-    objectives: Sequence[replies.ObjectiveState],
-    exercises: Mapping[str, str],
-    *,
-    taken: bool,
+    objectives: Sequence[replies.ObjectiveState], exercises: Mapping[str, str], *, taken: bool
 ) -> None:
     """Each objective with its evidence.
 
@@ -540,6 +536,7 @@ def show_objectives(
         exercises: the line about each exercise, by id.
         taken: the quiz was taken, so there is something to say of it.
     """
+    console = current()
     console.heading("After this course you can …")
     for number, one in enumerate(objectives, 1):
         console.item(str(number), one.title)

@@ -65,7 +65,7 @@ def menu(
         return None
     console = current()
     if web or (console.interactive and console.fancy):
-        playing.open_view(console, None, web=web, port=port, browser=not no_browser)
+        playing.open_view(None, web=web, port=port, browser=not no_browser)
     else:
         _list(console, None)
     return 0

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 
 from course.cli.frame import here
-from course.cli.frame.console import Console
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd, named, target
 from course.cli.frame.replies import Backup, Envelope, filled
 from course.errors import CourseError, UsageError
@@ -260,7 +260,7 @@ def play(console: Console, options: PlayOptions) -> int:
     if not options.web and (options.unseen or not console.interactive or not console.fancy):
         return _run_unseen(console, picked, options, targets, _guess(console, picked, given))
     browser = not options.no_browser
-    recorded = open_view(console, picked, web=options.web, port=options.port, browser=browser, guess=given)
+    recorded = open_view(picked, web=options.web, port=options.port, browser=browser, guess=given)
     if "record" in targets:
         write(targets["record"], recorded, "record")
     console.note(("After playing: ", "bold"), picked.scene.after)
@@ -304,13 +304,7 @@ def _guess(console: Console, chosen: Chosen, given: float | None) -> float | Non
 
 
 def open_view(
-    console: Console,
-    chosen: Chosen | None,
-    *,
-    web: bool,
-    port: int,
-    browser: bool,
-    guess: float | None = None,
+    chosen: Chosen | None, *, web: bool, port: int, browser: bool, guess: float | None = None
 ) -> bytes:
     """Play a scene, or all of them, until the user leaves; the recording of what was played last.
 
@@ -321,8 +315,8 @@ def open_view(
     play_in = _view("web" if web else "terminal")
 
     def say(text: str) -> None:
-        console.line(text)
-        console.flush()  # even into a file or a pipe: the page is served until somebody ends it
+        current().line(text)
+        current().flush()  # even into a file or a pipe: the page is served until somebody ends it
 
     more: dict[str, Any] = {"port": port, "open_browser": browser, "say": say} if web else {}
     return play_in(chosen, _desk(), guess=guess, **more)

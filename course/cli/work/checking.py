@@ -110,7 +110,7 @@ def check(
         with kept_sandboxes():
             return _check_all(console, here, verbose=verbose, form=form)
     chosen = chosen_work(here, *asked_for(here, exercise))
-    reply = _check_one(console, here, chosen, only=only, verbose=verbose, form=form)
+    reply = _check_one(here, chosen, only=only or "", verbose=verbose, form=form)
     if reply.next is not None and form == "text":
         console.next(reply.next.command)
     return here.answer(reply)
@@ -143,22 +143,15 @@ def reply_to(
 
 
 def _check_one(
-    console: Console,
-    here: Here,
-    work: StudentWork,
-    *,
-    only: str | None = None,
-    one_of_many: bool = False,
-    verbose: bool = False,
-    form: str = "text",
+    here: Here, work: StudentWork, *, verbose: bool, form: str, only: str = "", one_of_many: bool = False
 ) -> Check:
     """Check, record, show; raises the error if it cannot be checked."""
-    exercise, last = work.exercise, here.known_history(work.exercise).last
+    console, exercise, last = current(), work.exercise, here.known_history(work.exercise).last
     if form == "text":
         report_source_file(console, here, work)
     took = f", about {last.seconds:.0f} s" if last is not None and last.seconds >= 1 else ""
     with console.working(f"Checking {exercise.id}{took}"):
-        made = attempts.attempt(exercise, here.catalog, work.submission, only or "")
+        made = attempts.attempt(exercise, here.catalog, work.submission, only)
     verdict = made.verdict
     here.record("check", exercise.id, made.data(here.catalog.version, one_of_many=one_of_many))
     if form == "text":
@@ -172,18 +165,18 @@ def _check_one(
         brief = exercise.is_warm_up and not verbose
         if console.draws:  # above, so that the finding stays on the screen
             show_curve(console, made)
-        if only is None:  # first the functions that the last edit broke, and those that it fixed
+        if not only:  # first the functions that the last edit broke, and those that it fixed
             fixed, broke = (
                 [f"{task.title}  [{task.id}]" for task in exercise.task if task.id in changed]
                 for changed in here.known_history(exercise).changed_tasks()
             )
             show_changes(console, broke, fixed)
-        show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
+        show_verdict(console, exercise, verdict, verbose=verbose, whole=not only, brief=brief)
         if not console.draws:
             show_curve(console, made, drawn=False)
     else:
         annotate(console, here, work, verdict, form)
-    step = next_step(here, made) if only is None or not verdict.all_pass else ""
+    step = next_step(here, made) if not only or not verdict.all_pass else ""
     again = f"course check {exercise.id}"
     return reply_to(here.course, verdict, step or again, made.printed, curve_replies(made))
 
@@ -204,7 +197,7 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
             console.heading(exercise.id)
         try:
             work = chosen_work(here, exercise)
-            results.append(_check_one(console, here, work, one_of_many=True, verbose=verbose, form=form))
+            results.append(_check_one(here, work, one_of_many=True, verbose=verbose, form=form))
         except CourseError as error:
             console.error(error.message, error.help)
             body = filled(ErrorBody, error)

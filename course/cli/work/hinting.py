@@ -244,7 +244,7 @@ def reflect(
         if said != kept:
             graded = ()
             here.record(KIND, chosen.id, {"text": said})
-        graded = _judged(console, here, chosen, rubric, grades, graded)
+        graded = _judged(here, chosen, rubric, grades, graded)
     elif grades is not None:
         raise UsageError("There is no answer to grade yet.", help="Give it with --answer FILE.")
     points = tuple(map(ReflectPoint, rubric.points, graded or [None] * len(rubric.points)))
@@ -314,14 +314,10 @@ def _typed(console: Console) -> str:
 
 
 def _judged(
-    console: Console,
-    here: Here,
-    chosen: Exercise,
-    rubric: Rubric,
-    grades: str | None,
-    before: tuple[str, ...],
+    here: Here, chosen: Exercise, rubric: Rubric, grades: str | None, before: tuple[str, ...]
 ) -> tuple[str, ...]:
     """Show the good answer and the points, with grades from the command line, the student or the record."""
+    console = current()
     console.blank()
     console.heading("A good answer")
     for paragraph in rubric.good_answer.strip().split("\n\n"):

@@ -228,10 +228,8 @@ def _plotted(console: Console, comparison: Comparison, plot: Path) -> tuple[Writ
         pictures = render(comparison.rows, plot.suffix.lower().removeprefix("."))
     if not pictures:
         console.line("No figure: one of steps needs three values of --dt, one of speed boxes and stack.")
-    return tuple(
-        here.write_told(here.inserted(plot, name), picture, why="engines")
-        for name, picture in pictures.items()
-    )
+    to = {name: here.inserted(plot, name) for name in pictures}
+    return tuple(here.write_told(to[name], picture, why="engines") for name, picture in pictures.items())
 
 
 def _step(text: str) -> float:
@@ -240,9 +238,8 @@ def _step(text: str) -> float:
     try:
         step = float(top) / (float(bottom) if slash else 1.0)
     except (ValueError, ZeroDivisionError):
-        raise UsageError(
-            f"--dt {text}: this is not a step.", help="Give seconds, as 0.005 or 1/240.", code="bad_step"
-        ) from None
+        said = f"--dt {text}: this is not a step."
+        raise UsageError(said, help="Give seconds, as 0.005 or 1/240.", code="bad_step") from None
     if not _SHORTEST <= step <= _LONGEST:
         problem = f"--dt {text}: the step is not between {_SHORTEST:g} and {_LONGEST:g} s."
         fix = "The scenarios last from half a second to ten seconds; 1/240 is usual."
@@ -412,8 +409,7 @@ def _origins(console: Console, comparison: Comparison) -> None:
         when = cached[0] if cached[0] == cached[-1] else f"{cached[0]} to {cached[-1]}"
         console.note(f"Remembered from {when}; --fresh measures again.")
     if comparison.reference is not None:
-        console.note(
-            ("Rows marked reference", "bold"), f" were not measured here: {comparison.reference.label}."
-        )
+        where = f" were not measured here: {comparison.reference.label}."
+        console.note(("Rows marked reference", "bold"), where)
     if comparison.quick:
         console.note("Quick: fewer starts, steps and repetitions; leave --quick out for the whole.")

@@ -213,9 +213,8 @@ def check(
     """
     console, path = current(), named(file)
     if not path.exists():
-        raise NotFoundError(
-            f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
-        )
+        problem = f"There is no file {file}."
+        raise NotFoundError(problem, help="`course notebook build` writes notebooks.", code="no_file")
     data = read_notebook(path)
     here, catalog = here_or_outside()
     chosen = _exercise(catalog, path, data, exercise)
@@ -227,10 +226,8 @@ def check(
     if made.problem is not None:
         raise made.problem
     show_verdict(console, chosen, made.verdict, verbose=verbose)
-    for warning in here.warnings if here else ():
-        console.warn(warning)
     reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
-    return console.answer(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
+    return (here or console).answer(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
 
 
 def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, executed: bool) -> int:

@@ -126,9 +126,8 @@ def list_simulations(
 
     Each has a question. Answer it before you run the simulation.
     """
-    console = current()
+    console, entries = current(), []
     simulations = [get(one) for one in ((name,) if name else SIMULATIONS)]
-    entries = []
     for simulation in simulations:
         console.heading(simulation.id, simulation.title)
         console.item("shows", simulation.teaches, width=5)

@@ -204,10 +204,8 @@ class History:
             return False
         before = hint.fingerprint if hint else stub
         since = hint.id if hint else 0
-        return any(
-            run.id > since and run.fingerprint != before and not all(check.passed for check in run.checks)
-            for run in self.runs
-        )
+        attempts = (run for run in self.runs if run.id > since and run.fingerprint != before)
+        return any(not check.passed for run in attempts for check in run.checks)
 
 
 def history_of(events: Iterable[Event]) -> History:
@@ -363,11 +361,8 @@ def lesson_events(store: Store | None, lesson: str, split: Mapping[str, str]) ->
     if store is None:
         return ()
     whole = store.events(subject=split[lesson]) if lesson in split else ()
-    kept = [
-        event
-        for event in whole
-        if event.kind in {"prediction", "cell"} or (event.kind == "lesson" and "blocks" not in event.data)
-    ]
+    kinds = {"prediction", "cell", "lesson"}
+    kept = [one for one in whole if one.kind in kinds and not (one.kind == "lesson" and "blocks" in one.data)]
     return (*kept, *store.events(subject=lesson))
 
 

@@ -147,9 +147,8 @@ def _read(path: Path) -> str:
         return data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise UsageError(
-            f"{path}:{line}: this is not UTF-8 text.", help="Save it as UTF-8.", code="answers_format"
-        ) from None
+        said = f"{path}:{line}: this is not UTF-8 text."
+        raise UsageError(said, help="Save it as UTF-8.", code="answers_format") from None
 
 
 def _parse_toml(path: Path, text: str) -> dict[str, Any]:
@@ -165,9 +164,8 @@ def _parse_json(path: Path, text: str) -> dict[str, Any]:
         names = [name for name, _ in pairs]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
-            raise UsageError(
-                f"{path}: {twice[:60]!r} is there twice.", help="Keep one of the two.", code="answers_format"
-            )
+            problem = f"{path}: {twice[:60]!r} is there twice."
+            raise UsageError(problem, help="Keep one of the two.", code="answers_format")
         return dict(pairs)
 
     try:

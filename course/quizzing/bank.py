@@ -345,9 +345,8 @@ def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:
 
 def check_seed(seed: int) -> int:
     if not 0 <= seed <= MAX_SEED:
-        raise UsageError(
-            f"{seed} is not a seed.", help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed"
-        )
+        problem = f"{seed} is not a seed."
+        raise UsageError(problem, help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed")
     return seed
 
 

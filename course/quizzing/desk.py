@@ -20,9 +20,8 @@ def fits(bank: Bank, attempt: Attempt) -> bool:
     if attempt.questions != bank.ids:
         return False
     posed = {question.question: question for question in bank.pose(attempt.seed)}
-    return all(
-        name in posed and posed[name].choice(option) is not None for name, option in attempt.answers.items()
-    )
+    answers = attempt.answers.items()
+    return all(name in posed and posed[name].choice(option) is not None for name, option in answers)
 
 
 def begun(bank: Bank, seed: int, version: str, record: Record) -> Attempt:

@@ -466,9 +466,8 @@ def mutants(name: _EachExercise = None) -> int:
 def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOutcome, ...]) -> None:
     for outcome in outcomes:
         mutant = outcome.mutant
-        console.heading(
-            f"{exercise.id}: {mutant.name}", f"breaks {mutant.task}, loses {in_points(outcome.lost)}"
-        )
+        breaks = f"breaks {mutant.task}, loses {in_points(outcome.lost)}"
+        console.heading(f"{exercise.id}: {mutant.name}", breaks)
         caught = f"{outcome.by} with {outcome.diagnosis}"
         told = {"mistake": outcome.looks_like, "caught by": caught, "reads": outcome.message}
         for label, text in (told | {"advice": outcome.help}).items():

@@ -81,9 +81,8 @@ def _keep(figures: list[str], folder: Path) -> int:
     from course.figures.looks import picture_and_words
 
     if not folder.is_dir():
-        raise UsageError(
-            f"There is no {folder}.", help="Figures belong to a checkout of the course: run this there."
-        )
+        problem = f"There is no {folder}."
+        raise UsageError(problem, help="Figures belong to a checkout of the course: run this there.")
     console = current()
     kept = {name: picture_and_words(name) for name in figures}
     for name, (picture, words) in kept.items():
@@ -101,9 +100,8 @@ def _run(*arguments: str, colour: bool = False) -> str:
     line = [sys.executable, "-m", "course", *arguments]
     done = subprocess.run(line, env=environ, capture_output=True, check=False, encoding="utf-8")
     if done.returncode:
-        raise InternalError(
-            f"`course {' '.join(arguments)}` failed: {done.stderr.strip()[-300:]}", code="picture_failed"
-        )
+        problem = f"`course {' '.join(arguments)}` failed: {done.stderr.strip()[-300:]}"
+        raise InternalError(problem, code="picture_failed")
     return done.stdout
 
 

@@ -193,9 +193,8 @@ def _completion(console: Console, option: str, shell: str) -> int:
     from typer.completion import get_completion_script, install  # type: ignore[attr-defined]
 
     if shell not in SHELLS:
-        raise UsageError(
-            f"{option} {shell[:20]}: no such shell is known.", help=f"Known: {', '.join(SHELLS)}."
-        )
+        problem = f"{option} {shell[:20]}: no such shell is known."
+        raise UsageError(problem, help=f"Known: {', '.join(SHELLS)}.")
     if option == "--show-completion":
         variable = "_COURSE_COMPLETE"
         console.raw(get_completion_script(prog_name="course", complete_var=variable, shell=shell) + "\n")

@@ -211,9 +211,8 @@ def cwd() -> Path:
     try:
         return Path.cwd()
     except OSError:
-        raise NotFoundError(
-            "The current folder no longer exists.", help="Change to another one.", code="directory_not_found"
-        ) from None
+        problem = "The current folder no longer exists."
+        raise NotFoundError(problem, help="Change to another one.", code="directory_not_found") from None
 
 
 def named(path: Path | str) -> Path:
@@ -228,9 +227,8 @@ def named(path: Path | str) -> Path:
             full.stat()
     except (RuntimeError, OSError) as error:
         why = getattr(error, "strerror", None) or f"there is no home folder {Path(path).parts[0]}"
-        raise UsageError(
-            f"{path} cannot be used: {why}.", help="Name another file or folder.", code="bad_file_name"
-        ) from None
+        problem = f"{path} cannot be used: {why}."
+        raise UsageError(problem, help="Name another file or folder.", code="bad_file_name") from None
     return full
 
 

@@ -55,9 +55,8 @@ def override(
     penalty touches it.
     """
     if (score is None) != lift:
-        raise UsageError(
-            "Give either --score and --reason, or --lift.", help="See `course grade override -h`."
-        )
+        problem = "Give either --score and --reason, or --lift."
+        raise UsageError(problem, help="See `course grade override -h`.")
     console = current()
     with previewed(out) if dry_run else open_results(out, writing=True) as results:
         student = results.called(student)

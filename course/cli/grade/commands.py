@@ -104,9 +104,8 @@ def export(
     if format == AUTOGRADER:
         written: Written | None = _autograder(out, output, exercises, seed, timeout)
     elif out is None:
-        raise UsageError(
-            "This format needs OUT.", help="Name the folder that `course grade run --out` wrote."
-        )
+        problem = "This format needs OUT."
+        raise UsageError(problem, help="Name the folder that `course grade run --out` wrote.")
     else:
         people = read_roster(roster) if roster else None
         if missing not in {"blank", "zero"}:
@@ -161,9 +160,8 @@ def _assignments(given: list[str]) -> dict[str, str]:
     for text in given:
         name, equals, number = text.partition("=")
         if not (name and equals and number) or name in found:
-            raise UsageError(
-                f"--assignment is {text!r}.", help="It takes EXERCISE=ID, once for each exercise."
-            )
+            problem = f"--assignment is {text!r}."
+            raise UsageError(problem, help="It takes EXERCISE=ID, once for each exercise.")
         found[name] = number
     return found
 
@@ -252,8 +250,7 @@ def similar(
     Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
     layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
     """
-    console = current()
-    catalog = load_catalog()
+    console, catalog = current(), load_catalog()
     with open_results(out) as results, console.working("Comparing"):
         found = compare(results, catalog, tuple(exercise or ()), at_least=share)
     target = output or out / "similar.html"
@@ -312,9 +309,8 @@ def salvage(
     """
     console = current()
     if to.exists():
-        raise UsageError(
-            f"{to} exists already; nothing was changed.", help="Name a new folder.", code="out_exists"
-        )
+        problem = f"{to} exists already; nothing was changed."
+        raise UsageError(problem, help="Name a new folder.", code="out_exists")
     folder = private_folder() if dry_run else to
     make_folder(folder)
     try:

@@ -42,9 +42,8 @@ def _share(text: str | float) -> float:
     except ValueError:
         share = -1.0
     if rest or not 0 <= share <= 1:
-        raise UsageError(
-            f"--share is {text!r}.", help="It takes a number from 0 to 1, or a percentage: 0.6 or 60%."
-        )
+        problem = f"--share is {text!r}."
+        raise UsageError(problem, help="It takes a number from 0 to 1, or a percentage: 0.6 or 60%.")
     return share
 
 
@@ -113,9 +112,8 @@ def agreed(console: Console, attempt: Callable[[str], T], *, yes: bool) -> T:
         else:
             console.line(f"{error.message} {FOREIGN}")
             if not console.confirm("Do you trust whoever made this gradebook, and run them?"):
-                raise UsageError(
-                    "Nothing was run, and nothing was changed.", code="foreign_graders"
-                ) from None
+                problem = "Nothing was run, and nothing was changed."
+                raise UsageError(problem, code="foreign_graders") from None
         return attempt(error.sha256)
 
 

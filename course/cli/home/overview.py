@@ -39,9 +39,8 @@ def dashboard() -> int:
     lessons, exercises = catalog.lesson_ids(), catalog.exercise_ids()
     step = "course init my-course"
     console.heading(catalog.title)
-    console.line(
-        f"{counted(len(lessons), 'lesson')}, {counted(len(exercises), 'exercise')}; all of it works offline."
-    )
+    all_of_it = f"{counted(len(lessons), 'lesson')}, {counted(len(exercises), 'exercise')}"
+    console.line(f"{all_of_it}; all of it works offline.")
     console.line("You are not in a workspace: the folder that holds your own files.")
     console.note("See what it looks like first: course demo")
     console.next(step)
@@ -216,10 +215,8 @@ def _inside(console: Console, here: Here) -> int:
         rows = [(one.id, str(one.number), WORDS[one.state], score_of(one)) for one in states]
         console.table(("Exercise", "No.", "State", "Score"), rows)
     if here.workspace.version != catalog.version:
-        console.note(
-            f"The course is at version {catalog.version}, this workspace at {here.workspace.version}: "
-            "course update --dry-run shows what is new."
-        )
+        versions = f"The course is at version {catalog.version}, this workspace at {here.workspace.version}"
+        console.note(f"{versions}: course update --dry-run shows what is new.")
     if objectives:
         console.note("To play with: course sandbox")
     if ahead:

@@ -1,4 +1,4 @@
-"""``course lessons`` and ``course lesson``: the list of lessons, and reading one."""
+"""``course lessons``, ``lesson`` and ``warmup``: the lists, reading a lesson, doing a small task of one."""
 
 import contextlib
 import io
@@ -179,9 +179,8 @@ def _section(script: Script, slug: str) -> Section:
     found = next((section for section in script.sections if section.slug == slug), None)
     if found is None:
         known = ", ".join(section.slug for section in script.sections if section.level == 2)
-        raise NotFoundError(
-            f"{script.lesson.id} has no section {slug!r}.", help=f"It has: {known}.", code="section_not_found"
-        )
+        problem = f"{script.lesson.id} has no section {slug!r}."
+        raise NotFoundError(problem, help=f"It has: {known}.", code="section_not_found")
     return found
 
 

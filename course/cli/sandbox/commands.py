@@ -120,8 +120,7 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
 
     Exit code 1 if it does.
     """
-    console = current()
-    recorded = recording.read(named(file))
+    console, recorded = current(), recording.read(named(file))
     with console.working("Replaying"):
         difference = recording.replay(recorded)
     versions = tuple(
@@ -134,10 +133,8 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
         states = counted(difference.checked, "state")
         console.line(f"The same, bit by bit: {counted(recorded.ticks, 'step')}, {states} compared.")
     else:
-        console.line(
-            f"It differs at step {difference.tick} (t = {difference.t:.3f} s); "
-            f"up to step {difference.good_until} it was the same."
-        )
+        at = f"step {difference.tick} (t = {difference.t:.3f} s)"
+        console.line(f"It differs at {at}; up to step {difference.good_until} it was the same.")
         if not versions:
             console.note("All versions are the same: the file was changed, or this is a fault of the course.")
     return console.answer(

@@ -91,8 +91,7 @@ def doctor(
     It also says what is missing, with the command that installs it. Exit code 4 if the course cannot work
     without a missing part.
     """
-    console = current()
-    catalog = load_catalog()
+    console, catalog = current(), load_catalog()
     found = tuple(packages())
     fixes = _missing(found)
     workspace, repaired, trouble = _workspace(repair=repair)
@@ -169,9 +168,8 @@ def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
     for group, items in groups.items():
         names = ", ".join(item.name for item in items)
         verb = "are" if len(items) > 1 else "is"
-        what = (
-            f"Optional ({group}): {names} {verb} missing." if group else f"{names} {verb} missing or too old."
-        )
+        missing = f"{names} {verb} missing"
+        what = f"Optional ({group}): {missing}." if group else f"{missing} or too old."
         fixes.append(Fix(what, "pip install " + " ".join(f"'{item.requirement}'" for item in items)))
     return tuple(fixes)
 
@@ -243,9 +241,8 @@ def bug(
     crash = _last_crash()
     text = redacted("\n".join(_report(crash)))
     written = here.write_told(target, text.encode("utf-8", "backslashreplace"), why="bug")
-    console.line(
-        "It contains a traceback." if crash else "No crash of the course was found: it has no traceback."
-    )
+    none = "No crash of the course was found: it has no traceback."
+    console.line("It contains a traceback." if crash else none)
     console.note("Read it before you pass it on: error messages can quote your own files.")
     return console.answer(Bug(file=written, traceback=crash is not None))
 

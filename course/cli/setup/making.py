@@ -91,9 +91,8 @@ def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | No
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise UsageError(
-                f"The folder {path.parent} cannot be made ({error.strerror or error}).", code="not_writable"
-            ) from error
+            problem = f"The folder {path.parent} cannot be made ({error.strerror or error})."
+            raise UsageError(problem, code="not_writable") from error
         written.append(here.write_told(path, text(requirement).encode("utf-8"), why="init"))
     return written
 

@@ -1,9 +1,7 @@
-"""``course diff``, ``course reset`` and ``course update``: the stub, and newer versions of it.
+"""``course start``, ``diff``, ``reset`` and ``update``: the stub, and newer versions of it.
 
 Every replaced file is copied to ``.course/backups`` first, and the copy's path is printed.
 """
-
-from __future__ import annotations
 
 import contextlib
 import difflib

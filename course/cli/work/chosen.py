@@ -162,13 +162,10 @@ def _notebook_name(exercise: Exercise) -> str:
 
 def _module(here: Here, exercise: Exercise) -> StudentWork:
     source = here.source(exercise)
-    other = here.misnamed(exercise)
-    note = (
-        f"{exercise.place}/{other} is not read: the file that counts is {exercise.module}. Capitals matter."
-    )
-    return StudentWork(
-        exercise, exercise.module, source, source, here.stub(exercise), notes=(note,) if other else ()
-    )
+    name, other = exercise.module, here.misnamed(exercise)
+    note = f"{exercise.place}/{other} is not read: the file that counts is {name}. Capitals matter."
+    notes = (note,) if other else ()
+    return StudentWork(exercise, name, source, source, here.stub(exercise), notes=notes)
 
 
 def _notebook(here: Here, exercise: Exercise) -> StudentWork:

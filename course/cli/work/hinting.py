@@ -1,4 +1,4 @@
-"""``course hint`` and ``course solution``: as much help as the student has worked for.
+"""``course hint``, ``solution`` and ``reflect``: as much help as the student has worked for.
 
 Hints come one at a time, and each needs an attempt since the last one: a failed check of changed code. The
 next hint fits that check's diagnosis, or else is the mildest one left. The number left is never shown,
@@ -238,9 +238,8 @@ def reflect(
         if words < rubric.least_words:
             least = f"a good one is shown once yours has {rubric.least_words}"
             fix = "Write it as you would explain it to a colleague."
-            raise UsageError(
-                f"Your answer has {counted(words, 'word')}; {least}.", help=fix, code="too_short"
-            )
+            problem = f"Your answer has {counted(words, 'word')}; {least}."
+            raise UsageError(problem, help=fix, code="too_short")
         if said != kept:
             graded = ()
             here.record(KIND, chosen.id, {"text": said})

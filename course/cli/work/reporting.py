@@ -43,10 +43,8 @@ def report(
         made = report_of(chosen, here.catalog, work.submission)
     folder = _folder(here, chosen.place, out)
     console.heading(made.title, chosen.id)
-    sections = tuple(
-        _shown(console, section, folder / f"{number}-{_slug(section.title)}.png")
-        for number, section in enumerate(made.sections, 1)
-    )
+    files = (folder / f"{n}-{_slug(one.title)}.png" for n, one in enumerate(made.sections, 1))
+    sections = tuple(_shown(console, *both) for both in zip(made.sections, files, strict=True))
     written = _write_bag(console, made, bag) if bag is not None else None
     console.next(after_report(here, chosen))
     return here.answer(

@@ -137,9 +137,8 @@ def _target(here: Here, output: Path | None, only: Sequence[Exercise]) -> Path:
     if not path.parent.is_dir():
         raise UsageError(f"There is no folder {path.parent}.", help="Make it, or name another file.")
     if path.suffix.lower() != ".zip":
-        raise UsageError(
-            f"{path.name} does not end in .zip.", help="Name a .zip file with -o.", code="not_a_zip"
-        )
+        problem = f"{path.name} does not end in .zip."
+        raise UsageError(problem, help="Name a .zip file with -o.", code="not_a_zip")
     return path
 
 

@@ -254,17 +254,15 @@ class ReaderApp(FullScreenApp):
             open_ = sum(progress.prediction(q) is None for q in asked)
             more = f"   {open_} to predict" if open_ and section.level == 2 else ""
             indent = "  " * (section.level - 2)
-            options.append(
-                (f"block:{section.start}", f"{'✓' if done else ' '} {indent}{section.title}{more}")
-            )
+            words = f"{'✓' if done else ' '} {indent}{section.title}{more}"
+            options.append((f"block:{section.start}", words))
             if section.start <= here and section.level == 2:
                 at = f"block:{section.start}"
             for index, block in enumerate(script.blocks):
                 if isinstance(block, Task) and script.section_at(index) == section:
                     mark = "✓" if page.practice.of(block.id).done else " "
-                    options.append(
-                        (f"block:{index}", f"{mark}   {block.what.partition(',')[0]}: {block.title}")
-                    )
+                    words = f"{mark}   {block.what.partition(',')[0]}: {block.title}"
+                    options.append((f"block:{index}", words))
         options.append(("", ""))
         for number, name in enumerate(page.catalog.lesson_ids(), start=1):
             words = f"{'✓' if page.is_read(name) else ' '} {number}. {page.catalog.lesson(name).title}"

@@ -191,11 +191,6 @@ class CellState:
     error: str = ""
     seconds: float = 0.0
 
-    @property
-    def edited(self) -> bool:
-        """Its code changed since it ran."""
-        return self.ran is not None and self.ran != self.source
-
 
 class Writer:
     """Adds events to a record, one after the other, in a thread of its own."""

@@ -57,7 +57,9 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     if answers is not None:
         return _take_file(console, desk, answers, seed)
     if questions:
-        seed = screen.printed_seed(console, desk, seed)
+        # They are the same until they are answered; an attempt with an answer stays open whatever is printed.
+        if seed is None or desk.history.open is None or not desk.history.open.answers:
+            seed = screen.open_or_new(console, desk, seed).seed
         posed = desk.bank.pose(seed)
         screen.show_mark(console, len(posed))
         return screen.hand_out(console, desk.here, posed, seed, "take")

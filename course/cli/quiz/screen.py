@@ -416,17 +416,6 @@ def open_or_new(console: Console, desk: Desk, seed: int | None) -> Attempt:
     return desk.begin(desk.new_seed() if seed is None else seed)
 
 
-def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
-    """Which questions to print: they are the same until they are answered.
-
-    An attempt with at least one answer stays open, whatever is printed.
-    """
-    open_one = desk.history.open
-    if seed is not None and open_one is not None and open_one.answers:
-        return seed
-    return open_or_new(console, desk, seed).seed
-
-
 def agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:
     """Whether a file completes an open attempt and does not contradict it."""
     same = attempt.seed == seed and fits(bank, attempt)

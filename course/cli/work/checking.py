@@ -182,17 +182,8 @@ def _check_one(
 
 
 def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:
-    known = worked_on(here)
-    # A repository may lack the record of started exercises, but it has the files.
-    started = [
-        one
-        for one in here.catalog.exercises()
-        if one in known or here.workspace.path(one.place, one.module).is_file()
-    ]
-    if not started:
-        raise here.nothing_started()
     results: list[Check | ErrorReply] = []
-    for exercise in started:
+    for exercise in worked_on(here):
         if form == "text":
             console.heading(exercise.id)
         try:
@@ -202,6 +193,8 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
             console.error(error.message, error.help)
             body = filled(ErrorBody, error)
             results.append(ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body))
+    if not results:
+        raise here.nothing_started()
     complete = sum(result.ok for result in results)
     pass_ = "passes" if complete == 1 else "pass"
     said = f"{complete} of {counted(len(results), 'exercise')} {pass_} every public check."

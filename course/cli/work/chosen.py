@@ -111,13 +111,16 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Stu
 
 
 def worked_on(here: Here) -> tuple[Exercise, ...]:
-    """The exercises that were started, or whose notebook was edited."""
-    started = here.workspace.started()
-    return tuple(
-        exercise
-        for exercise in here.catalog.exercises()
-        if exercise.id in started or _handed_in_notebook(here, exercise)[0] is not None
-    )
+    """The exercises that were started, that have a file, or whose notebook was edited.
+
+    A repository may lack the record of started exercises, but it has the files.
+    """
+    started, found = here.workspace.started(), []
+    for one in here.catalog.exercises():
+        there = one.id in started or here.workspace.path(one.place, one.module).is_file()
+        if there or _handed_in_notebook(here, one)[0] is not None:
+            found.append(one)
+    return tuple(found)
 
 
 def work_of(

@@ -268,7 +268,7 @@ class ScreenPrinter(FancyPrinter):
         if not state.error and state.printed == recorded and state.ran == cell.source:
             label = f"ran here in {took}: prints the same" if recorded else f"ran here in {took}"
             return [self._rule(label), *([Text(recorded)] if recorded else [])]
-        stale = ", before the last change" if state.edited else ""
+        stale = ", before the last change" if state.ran != state.source else ""
         body = [Text(state.printed)] if state.printed else []
         if state.error:
             body.append(Text(state.error, style="red"))

@@ -121,17 +121,12 @@ _COLUMNS = (
 
 def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
     """Every row with its truth, its error and whether it is the best of its column."""
-    best = best_rows(comparison.rows)
-    return tuple(
-        filled(
-            EngineRow,
-            row,
-            scenario := SCENARIOS[row.scenario],
-            error=None if row.value is None else scenario.error(row.value),
-            best=id(row) in best,
-        )
-        for row in comparison.rows
-    )
+    best, made = best_rows(comparison.rows), []
+    for row in comparison.rows:
+        scenario = SCENARIOS[row.scenario]
+        error = None if row.value is None else scenario.error(row.value)
+        made.append(filled(EngineRow, row, scenario, error=error, best=id(row) in best))
+    return tuple(made)
 
 
 app = group(COMMANDS["engines"].summary)
@@ -233,10 +228,8 @@ def _plotted(console: Console, comparison: Comparison, plot: Path) -> tuple[Writ
         pictures = render(comparison.rows, plot.suffix.lower().removeprefix("."))
     if not pictures:
         console.line("No figure: one of steps needs three values of --dt, one of speed boxes and stack.")
-    return tuple(
-        here.write_told(here.inserted(plot, name), picture, why="engines")
-        for name, picture in pictures.items()
-    )
+    to = {name: here.inserted(plot, name) for name in pictures}
+    return tuple(here.write_told(to[name], picture, why="engines") for name, picture in pictures.items())
 
 
 def _step(text: str) -> float:
@@ -245,15 +238,12 @@ def _step(text: str) -> float:
     try:
         step = float(top) / (float(bottom) if slash else 1.0)
     except (ValueError, ZeroDivisionError):
-        raise UsageError(
-            f"--dt {text}: this is not a step.", help="Give seconds, as 0.005 or 1/240.", code="bad_step"
-        ) from None
+        said = f"--dt {text}: this is not a step."
+        raise UsageError(said, help="Give seconds, as 0.005 or 1/240.", code="bad_step") from None
     if not _SHORTEST <= step <= _LONGEST:
-        raise UsageError(
-            f"--dt {text}: the step is not between {_SHORTEST:g} and {_LONGEST:g} s.",
-            help="The scenarios last from half a second to ten seconds; 1/240 is usual.",
-            code="bad_step",
-        )
+        problem = f"--dt {text}: the step is not between {_SHORTEST:g} and {_LONGEST:g} s."
+        fix = "The scenarios last from half a second to ten seconds; 1/240 is usual."
+        raise UsageError(problem, help=fix, code="bad_step")
     return step
 
 
@@ -284,7 +274,19 @@ def _show(console: Console, comparison: Comparison, findings: Sequence[str]) -> 
             _scenario(console, scenario, rows, best)
     if best and not console.quiet:
         console.line("best: nearest the truth, or where more is better the most; ties within half its range.")
-    _troubles(console, comparison)
+    said: set[tuple[str, str]] = set()
+    for row in comparison.rows:  # those without a number, and why
+        if row.status in ("ok", "not_installed", "not_applicable"):
+            continue
+        where = "" if row.status == "unavailable" else f" in {row.scenario} ({row.setting})"
+        text = f"{ENGINES[row.engine].name} {_STATUS[row.status]}{where}: {row.message}"
+        if (row.engine, text) not in said:
+            said.add((row.engine, text))
+            console.line(text)
+    for state in comparison.engines:
+        if state.version is None:
+            command = f": {state.command}" if state.command else "."
+            console.line(f"{state.name}: {state.missing}{command}")
     _origins(console, comparison)
     if findings:
         console.heading("What this shows")
@@ -300,17 +302,18 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
     steps = sorted({row.dt for row in rows}, reverse=True)
     lines = []
     for dt in steps:
-        for engine, origin in _lines(row for row in rows if row.dt == dt):
-            cells = {
-                row.setting: _cell(scenario, row, best)
-                for row in rows
-                if row.engine == engine and row.dt == dt and (row.origin == "reference") == origin
-            }
+        whole = math.isclose(1.0 / dt, round(1.0 / dt), rel_tol=1e-6)
+        step = [f"1/{1.0 / dt:.0f} s" if whole else f"{dt:g} s"] if len(steps) > 1 else []
+        found: dict[tuple[str, bool], dict[Setting, str]] = {}  # by engine, and whether from the reference
+        for row in (row for row in rows if row.dt == dt):
+            cells = found.setdefault((row.engine, row.origin == "reference"), {})
+            cells[row.setting] = _cell(scenario, row, best)
+        for (engine, origin), cells in found.items():
+            if not origin and (engine, True) in found:
+                continue  # what has a reference is not listed as missing too
             name = ENGINES[engine].name + (", reference" if origin else "")
-            step = [_shown_step(dt)] if len(steps) > 1 else []
-            lines.append(
-                (_truth(scenario), name, *step, cells.get(DEFAULT, ""), _tuned(cells, rows, engine, dt))
-            )
+            well_set = _tuned(cells, rows, engine, dt)
+            lines.append((_truth(scenario), name, *step, cells.get(DEFAULT, ""), well_set))
     heads = ("Truth", "Engine", *(["Step"] if len(steps) > 1 else []), "As it comes", "Well set")
     console.table(heads, lines)
     if console.plain and not console.quiet:
@@ -328,12 +331,6 @@ def _tuned(cells: Mapping[Setting, str], rows: Sequence[Row], engine: str, dt: f
     return "" if text == cells.get(DEFAULT) and not any(letter.isdigit() for letter in text) else text
 
 
-def _lines(rows: Iterable[Row]) -> list[tuple[str, bool]]:
-    """(engine, from the reference) in order; an engine that has a reference is not listed as missing too."""
-    found = dict.fromkeys((row.engine, row.origin == "reference") for row in rows)
-    return [key for key in found if key[1] or (key[0], True) not in found]
-
-
 def best_rows(rows: Sequence[Row]) -> frozenset[int]:
     """Which rows, by ``id``, come nearest the truth in their column; ties are all best.
 
@@ -346,23 +343,19 @@ def best_rows(rows: Sequence[Row]) -> frozenset[int]:
             columns.setdefault((row.scenario, row.dt, row.setting), []).append(row)
     best: set[int] = set()
     for (scenario_id, _dt, _setting), column in columns.items():
-        scenario = SCENARIOS[scenario_id]
         if len(column) < 2:
             continue
-        distance = [_distance(scenario, row) for row in column]
+        scenario = SCENARIOS[scenario_id]
+        large, truth = scenario.better == "large", scenario.truth or 0.0
+        values = [row.value or 0.0 for row in column]
+        distance = [-value if large else abs(value - truth) for value in values]
         nearest, first = min(zip(distance, column, strict=True), key=lambda pair: pair[0])
         # Values that look equal on the screen share a rank, and so do those within the spread of phases or
         # starts.
         slack = max(0.5 * 10.0**-scenario.digits, 0.5 * (first.highest - first.lowest))
-        if scenario.better == "large":
-            slack = 1e-9
+        slack = 1e-9 if large else slack
         best |= {id(row) for row, far in zip(column, distance, strict=True) if far - nearest <= slack}
     return frozenset(best)
-
-
-def _distance(scenario: Scenario, row: Row) -> float:
-    value = row.value or 0.0
-    return -value if scenario.better == "large" else abs(value - (scenario.truth or 0.0))
 
 
 def _truth(scenario: Scenario) -> str:
@@ -378,7 +371,7 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
         return _STATUS[row.status]
     text = number(scenario, row.value)
     if rate := row.details.get("steps_per_second"):
-        text = f"{text}, {_rate(rate)}"
+        text += f", {rate:.0f}/s" if rate < 1000 else f", {rate / 1000:.1f}k/s"
     elif row.value in (row.details.get("fastest_tried_m_s"), row.details.get("longest_tried_ms")):
         text += ", all"
     if row.highest - row.lowest >= 10.0**-scenario.digits:
@@ -389,18 +382,13 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
 
 
 def number(scenario: Scenario, value: float) -> str:
-    return _unit(_digits(scenario, value), scenario)
-
-
-def _digits(scenario: Scenario, value: float) -> str:
     """A value: signed where the truth is zero, and never "0" for a number that is not zero."""
     sign = "+" if scenario.truth == 0.0 and scenario.unit == "%" else ""
     size = abs(value)
     if size >= 1000:
-        return f"{value:{sign}.4g}" if size >= 1e5 else f"{value:{sign}.0f}"
-    if 0.0 < size < 0.5 * 10.0**-scenario.digits:
-        return f"{value:{sign}.0e}"
-    return f"{value + 0.0:{sign}.{scenario.digits}f}"
+        return _unit(f"{value:{sign}.4g}" if size >= 1e5 else f"{value:{sign}.0f}", scenario)
+    form = ".0e" if 0.0 < size < 0.5 * 10.0**-scenario.digits else f".{scenario.digits}f"
+    return _unit(f"{value + 0.0:{sign}{form}}", scenario)
 
 
 def _short(value: float) -> str:
@@ -410,34 +398,8 @@ def _short(value: float) -> str:
     return f"{value + 0.0:.{max(0, digits)}f}"
 
 
-def _rate(rate: float) -> str:
-    return f"{rate:.0f}/s" if rate < 1000 else f"{rate / 1000:.1f}k/s"
-
-
 def _unit(text: str, scenario: Scenario) -> str:
     return text if scenario.unit == "1" else f"{text}{'' if scenario.unit == 'x' else ' '}{scenario.unit}"
-
-
-def _shown_step(dt: float) -> str:
-    rate = 1.0 / dt
-    return f"1/{rate:.0f} s" if math.isclose(rate, round(rate), rel_tol=1e-6) else f"{dt:g} s"
-
-
-def _troubles(console: Console, comparison: Comparison) -> None:
-    """The rows without a number, and why; and the command that installs what is missing."""
-    said: set[tuple[str, str]] = set()
-    for row in comparison.rows:
-        if row.status in ("ok", "not_installed", "not_applicable"):
-            continue
-        where = "" if row.status == "unavailable" else f" in {row.scenario} ({row.setting})"
-        text = f"{ENGINES[row.engine].name} {_STATUS[row.status]}{where}: {row.message}"
-        if (row.engine, text) not in said:
-            said.add((row.engine, text))
-            console.line(text)
-    for state in comparison.engines:
-        if state.version is None:
-            command = f": {state.command}" if state.command else "."
-            console.line(f"{state.name}: {state.missing}{command}")
 
 
 def _origins(console: Console, comparison: Comparison) -> None:
@@ -447,8 +409,7 @@ def _origins(console: Console, comparison: Comparison) -> None:
         when = cached[0] if cached[0] == cached[-1] else f"{cached[0]} to {cached[-1]}"
         console.note(f"Remembered from {when}; --fresh measures again.")
     if comparison.reference is not None:
-        console.note(
-            ("Rows marked reference", "bold"), f" were not measured here: {comparison.reference.label}."
-        )
+        where = f" were not measured here: {comparison.reference.label}."
+        console.note(("Rows marked reference", "bold"), where)
     if comparison.quick:
         console.note("Quick: fewer starts, steps and repetitions; leave --quick out for the whole.")

@@ -26,7 +26,7 @@ from course.cli.frame.app import again
 from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.options import Verbose, argument, exercise_ids
-from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
+from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep, filled
 from course.cli.home.advice import hint_is_due, is_done, next_in_course, next_step, next_task, why
 from course.cli.home.replies import Go
 from course.cli.reading.commands import show_text
@@ -190,9 +190,8 @@ class _Loop:
             self.console.gap()  # the terminal has written ^C
         finally:
             self.console.led = False
-        return self.console.answer(
-            Watch(exit_code=code, exercise=name, runs=tuple(self.runs), last=self.last)
-        )
+        reply = Watch(exit_code=code, exercise=name, runs=tuple(self.runs), last=self.last)
+        return self.console.answer(reply)
 
     def _work(self, task: Exercise) -> Exercise | None:
         """Work on a task until it passes or the user wants another one, which is returned."""
@@ -204,8 +203,8 @@ class _Loop:
         begun = watcher.is_begun()
         if not self.alone and begun:  # back to one that is done: not on at once
             stays = is_done(self.here.standing(), task)
-        elif not self.alone:
-            watcher.wait()
+        elif not self.alone:  # look at nothing before the next save
+            watcher.seen = _signature(watcher.paths)
         session: GradingSession | None = None
         try:
             with contextlib.ExitStack() as kept:
@@ -371,7 +370,7 @@ class Watcher:
     last: Check | ErrorReply | None = None
     pressed: Keys | None = None
     _name: str = ""
-    _seen: Signature | None = None
+    seen: Signature | None = None
     _gone: bool = False
     _left: bool = False
     _made: Attempt | None = None
@@ -385,24 +384,22 @@ class Watcher:
         if not signature:
             if not self._gone:
                 self.console.line(f"{self.shown} is gone; waiting for it to come back.")
-            self._gone, self._seen = True, None
+            self._gone, self.seen = True, None
             return False
-        if signature == self._seen:
+        if signature == self.seen:
             return False
         if _has_empty(signature):
             time.sleep(SECOND_LOOK)
             signature = _signature(self.paths)
-        self._seen, self._gone = signature, False
-        if self._grade(session, noticed):
-            return self.look(session)
-        return True
+        self.seen, self._gone = signature, False
+        return self.look(session) if self._grade(session, noticed) else True
 
     def press(self, key: str, session: GradingSession) -> bool:
         """Do what a key asks for; True if it does something."""
         if key == "h":
             give_hint(self.console, self.here, self.exercise, self._focus or None)
         elif key == "r":
-            self._seen = None
+            self.seen = None
             self.look(session)
         elif key in {"n", "v"} and self._made is not None:
             if key == "v":
@@ -451,20 +448,18 @@ class Watcher:
         """Whether there is something to check: the file that counts was edited."""
         try:
             work = chosen_work(self.here, self.exercise, self.named)
-            self._name = work.name
-            return work.notebook is not None or self.here.workspace.is_edited(
-                self.exercise.place, work.name, work.data
-            )
+            self._name, place = work.name, self.exercise.place
+            return work.notebook is not None or self.here.workspace.is_edited(place, work.name, work.data)
         except CourseError:  # the check says what is wrong
             return True
 
-    def wait(self) -> None:
-        """Look at nothing before the next save."""
-        self._seen = _signature(self.paths)
-
     def _grade(self, session: GradingSession, noticed: float) -> bool:
         """Grade and show the file; True if that was dropped because of a newer save."""
-        self._announce()
+        moment = datetime.now().astimezone().strftime("%H:%M:%S")
+        if self.console.fancy:
+            self.console.rich().rule(f"{moment}  {self.exercise.id}", style="dim")
+        else:
+            self.console.note(f"Checked at {moment}: {self.exercise.id}")
         try:
             work = chosen_work(self.here, self.exercise, self.named)
             self._name = work.name
@@ -479,10 +474,15 @@ class Watcher:
             self.here.record("check", self.exercise.id, made.data(self.here.catalog.version))
             if made.problem is not None:
                 raise made.problem
-        except CourseError as error:
-            if not isinstance(error, UngradableError):
-                raise
-            self._ungradable(error, noticed)
+        except UngradableError as error:
+            self._remember("ungradable", 0.0, 0.0, False, noticed)
+            show_loading(self.console, self._printed, whole=self.verbose)
+            self.console.line(error.message)
+            if error.help:
+                self.console.line(error.help)
+            body = filled(ErrorBody, error)
+            self.last = ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body)
+            self._flush_warnings()
             return False
         verdict = made.verdict
         self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
@@ -515,12 +515,9 @@ class Watcher:
     def _failing(self) -> list[str]:
         """Functions that were begun and have a check that does not pass, in the order of the exercise."""
         every = self._made.verdict.checks if self._made is not None else ()
-        found = []
-        for task in self.exercise.task:
-            checks = [check for check in every if check.task == task.id]
-            if any(check.status != "pass" for check in checks) and not is_unwritten(checks):
-                found.append(task.id)
-        return found
+        checks = {task.id: [check for check in every if check.task == task.id] for task in self.exercise.task}
+        wrong = {check.task for check in every if check.status != "pass"}
+        return [task for task, own in checks.items() if task in wrong and not is_unwritten(own)]
 
     def _say_changes(self, verdict: Verdict) -> None:
         """First the checks that broke since the last run, and those that were wrong and turned green."""
@@ -543,7 +540,7 @@ class Watcher:
         def look() -> None:
             while not done.wait(_GLANCE):
                 signature = _signature(self.paths)
-                if signature and not _has_empty(signature) and signature != self._seen:
+                if signature and not _has_empty(signature) and signature != self.seen:
                     superseded.set()
                 self._left = self._left or (self.pressed is not None and self.pressed.leave)
                 if superseded.is_set() or self._left:
@@ -563,27 +560,10 @@ class Watcher:
             if status is not None:
                 status.stop()
 
-    def _ungradable(self, error: UngradableError, noticed: float) -> None:
-        self._remember("ungradable", 0.0, 0.0, False, noticed)
-        show_loading(self.console, self._printed, whole=self.verbose)
-        self.console.line(error.message)
-        if error.help:
-            self.console.line(error.help)
-        body = ErrorBody(code=error.code, message=error.message, help=error.help)
-        self.last = ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body)
-        self._flush_warnings()
-
     def _remember(self, state: str, score: float, maximum: float, passed: bool, noticed: float) -> None:
         at = datetime.now(UTC).isoformat(timespec="milliseconds")
         latency = round(1000 * (time.perf_counter() - noticed), 1)
         self.runs.append(WatchRun(at, state, score, maximum, passed, latency, self.exercise.id))
-
-    def _announce(self) -> None:
-        moment = datetime.now().astimezone().strftime("%H:%M:%S")
-        if self.console.fancy:
-            self.console.rich().rule(f"{moment}  {self.exercise.id}", style="dim")
-        else:
-            self.console.note(f"Checked at {moment}: {self.exercise.id}")
 
     def _flush_warnings(self) -> None:
         for warning in dict.fromkeys(self.here.warnings):

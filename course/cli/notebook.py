@@ -85,24 +85,16 @@ def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> 
         return catalog.exercise(wanted)
     exercises = catalog.exercises()
     marks = [cell.tags.get("exercise") for cell in code_cells(data, path.name)]
+    found = [one for one in exercises if one.id in marks]
+    found += [one for one in exercises if path.stem == one.id or f"{path.stem}.py" == one.module]
+    if found:
+        return found[0]
     for exercise in exercises:
-        if exercise.id in marks:
-            return exercise
-    module = f"{path.stem}.py"
-    for exercise in exercises:
-        if path.stem == exercise.id or module == exercise.module:
-            return exercise
-    for exercise in exercises:
-        try:
+        with contextlib.suppress(UngradableError):
             notebook_source(data, exercise)
-        except UngradableError:
-            continue
-        return exercise
-    raise NotFoundError(
-        f"{path.name} does not say which exercise it is about, and defines no function of any.",
-        help="Say which with --exercise.",
-        code="which_exercise",
-    )
+            return exercise
+    problem = f"{path.name} does not say which exercise it is about, and defines no function of any."
+    raise NotFoundError(problem, help="Say which with --exercise.", code="which_exercise")
 
 
 # ---
@@ -200,11 +192,8 @@ def update(ids: Ids = None, out: Out = None) -> int:
     folder, layout = place(out)
     there = list(generate(catalog, ids or [], layout, there=folder))
     if not there:
-        raise NotFoundError(
-            f"There is no notebook of the course in {folder}.",
-            help="`course notebook build` writes them.",
-            code="no_notebooks",
-        )
+        problem = f"There is no notebook of the course in {folder}."
+        raise NotFoundError(problem, help="`course notebook build` writes them.", code="no_notebooks")
     return _write(console, catalog, folder, there)
 
 
@@ -224,9 +213,8 @@ def check(
     """
     console, path = current(), named(file)
     if not path.exists():
-        raise NotFoundError(
-            f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
-        )
+        problem = f"There is no file {file}."
+        raise NotFoundError(problem, help="`course notebook build` writes notebooks.", code="no_file")
     data = read_notebook(path)
     here, catalog = here_or_outside()
     chosen = _exercise(catalog, path, data, exercise)
@@ -238,24 +226,16 @@ def check(
     if made.problem is not None:
         raise made.problem
     show_verdict(console, chosen, made.verdict, verbose=verbose)
-    for warning in here.warnings if here else ():
-        console.warn(warning)
     reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
-    return console.answer(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
-
-
-# -- writing ---------------------------------------------------------------------------------------------
+    return (here or console).answer(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
 
 
 def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, executed: bool) -> int:
     from course.notebooks.magic import nbgrader_notebook
 
     if executed:
-        raise UsageError(
-            "--format nbgrader --executed: nbgrader runs notebooks itself.",
-            help="Leave one of the two out.",
-            code="executed_nbgrader",
-        )
+        problem = "--format nbgrader --executed: nbgrader runs notebooks itself."
+        raise UsageError(problem, help="Leave one of the two out.", code="executed_nbgrader")
     catalog = load_catalog()
     exercises = [catalog.exercise(name) for name in ids] if ids else list(catalog.exercises())
     notebooks = (
@@ -282,14 +262,12 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
         files.append(put(folder, notebook))
         console.line(_sentence(folder, files[-1]))
     changed = sum(file.action != "current" for file in files)
-    new = f"{changed} of them new or changed"
-    if len(files) == 1:
-        new = "new or changed" if changed else "not changed"
+    only = "new or changed" if changed else "not changed"
+    new = only if len(files) == 1 else f"{changed} of them new or changed"
     console.line((f"{counted(len(files), 'notebook')} in {folder}, {new}.", "bold"))
-    if find_spec("jupyterlab"):
-        console.note(f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}")
-    else:
-        console.note("Open them in any program for Jupyter notebooks; `course open` needs JupyterLab.")
+    lab = f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}"
+    other = "Open them in any program for Jupyter notebooks; `course open` needs JupyterLab."
+    console.note(lab if find_spec("jupyterlab") else other)
     return console.answer(Notebook(course=catalog.ref, folder=str(folder), files=tuple(files)))
 
 

@@ -126,32 +126,23 @@ def list_simulations(
 
     Each has a question. Answer it before you run the simulation.
     """
-    console = current()
+    console, entries = current(), []
     simulations = [get(one) for one in ((name,) if name else SIMULATIONS)]
     for simulation in simulations:
-        _describe(console, simulation, whole=name is not None)
-    example = name or CHAPTER[0]
-    console.note(("Next: " + (f"course sim run {example}" if name else f"course sim list {example}"), "bold"))
-    return console.answer(SimList(simulations=tuple(_entry(simulation) for simulation in simulations)))
-
-
-def _entry(simulation: Simulation) -> SimEntry:
-    parameters = tuple(
-        # Words have no ends.
-        filled(SimParameter, one, **({"low": None, "high": None} if one.choices else {}))
-        for one in simulation.parameters
-    )
-    return filled(SimEntry, simulation, parameters=parameters)
-
-
-def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
-    console.heading(simulation.id, simulation.title)
-    console.item("shows", simulation.teaches, width=5)
-    console.item("guess", simulation.question, width=5)
-    if whole:
-        for parameter in simulation.parameters:
+        console.heading(simulation.id, simulation.title)
+        console.item("shows", simulation.teaches, width=5)
+        console.item("guess", simulation.question, width=5)
+        for parameter in simulation.parameters if name else ():
             console.item("set", describe(parameter), width=5)
-    console.gap()
+        console.gap()
+        parameters = tuple(
+            # Words have no ends.
+            filled(SimParameter, one, **({"low": None, "high": None} if one.choices else {}))
+            for one in simulation.parameters
+        )
+        entries.append(filled(SimEntry, simulation, parameters=parameters))
+    console.note((f"Next: course sim {'run' if name else 'list'} {name or CHAPTER[0]}", "bold"))
+    return console.answer(SimList(simulations=tuple(entries)))
 
 
 @app.command(epilog="Example: course sim run free-fall --set height=20 --plot fall.png")
@@ -175,11 +166,8 @@ def run(
     if everything:
         if name is not None or pairs:
             extra = name if name is not None else f"--set {pairs[0]}"
-            raise UsageError(
-                f"{extra}: --all runs all four with their defaults.",
-                help="Leave one of the two out.",
-                code="all_and_one",
-            )
+            problem = f"{extra}: --all runs all four with their defaults."
+            raise UsageError(problem, help="Leave one of the two out.", code="all_and_one")
         return _run_all(console, plot, csv)
     if name is None:
         there = f"Known: {', '.join(SIMULATIONS)}."
@@ -220,16 +208,10 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
         names = (f"{column.name} [{column.unit}]" for column in result.columns)
         samples = zip(*(column.values.tolist() for column in result.columns), strict=True)
         written = here.write_told(csv, here.as_csv(names, samples), why="sim")
-    return filled(
-        Sim,
-        simulation,
-        result,
-        simulation=simulation.id,
-        settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
-        results=tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows),
-        plot=plotted,
-        csv=written,
-    )
+    settings = {p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters}
+    rows = tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows)
+    made = {"settings": settings, "results": rows, "plot": plotted, "csv": written}
+    return filled(Sim, simulation, result, simulation=simulation.id, **made)
 
 
 # -- on the screen ---------------------------------------------------------------------------------------
@@ -256,25 +238,18 @@ def _drawn(result: Result) -> Any:
 
 def _settings(simulation: Simulation, result: Result) -> str:
     """All settings in a line: "height 10 m, step 0.01 s"."""
-    parts = []
-    for parameter in simulation.parameters:
-        value = result.settings[parameter.name]
-        number = value if isinstance(value, str) else f"{value:.6g}"
-        parts.append(f"{parameter.name} {_with_unit(number, parameter.unit)}")
-    return ", ".join(parts)
+    values = ((one, result.settings[one.name]) for one in simulation.parameters)
+    texts = ((one, value if isinstance(value, str) else f"{value:.6g}") for one, value in values)
+    return ", ".join(f"{one.name} {_with_unit(text, one.unit)}" for one, text in texts)
 
 
 def _cells(row: Row) -> tuple[str, str, str, str]:
     """A row as text: simulated and theory to the same digit, and the error as a number of its own."""
-    places = _places(row.simulated, row.theory)
+    places, error = _places(row.simulated, row.theory), row.error
     theory = "" if row.theory is None else _number(row.theory, row.unit, places)
-    error = row.error
-    if error is None:
-        shown = ""
-    elif abs(error) < 1e-11 * max(abs(row.theory or 0.0), 1e-3):
+    shown = "" if error is None else _with_unit(f"{error:+#.3g}", row.unit)
+    if error is not None and abs(error) < 1e-11 * max(abs(row.theory or 0.0), 1e-3):
         shown = "0" if error == 0 else "round-off"
-    else:
-        shown = _with_unit(f"{error:+#.3g}", row.unit)
     return row.quantity, _number(row.simulated, row.unit, places), theory, shown
 
 
@@ -292,8 +267,7 @@ def _number(value: float, unit: str, places: str) -> str:
         return "never" if unit == "s" else "did not happen"
     if math.isinf(value):
         return "beyond all numbers"
-    text = f"{0.0 if abs(value) < 1e-11 else value:{places}}"
-    return _with_unit(text, unit)
+    return _with_unit(f"{0.0 if abs(value) < 1e-11 else value:{places}}", unit)
 
 
 def _with_unit(text: str, unit: str) -> str:

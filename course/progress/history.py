@@ -204,10 +204,8 @@ class History:
             return False
         before = hint.fingerprint if hint else stub
         since = hint.id if hint else 0
-        return any(
-            run.id > since and run.fingerprint != before and not all(check.passed for check in run.checks)
-            for run in self.runs
-        )
+        attempts = (run for run in self.runs if run.id > since and run.fingerprint != before)
+        return any(not check.passed for run in attempts for check in run.checks)
 
 
 def history_of(events: Iterable[Event]) -> History:
@@ -324,28 +322,24 @@ def mistakes_of(events: Iterable[Event]) -> tuple[Mistake, ...]:
     """
     found: dict[tuple[str, str, str], Mistake] = {}
     for event in events:
-        if event.kind == "check" and event.data.get("state") == "graded":
-            _take(found, event)
+        if event.kind != "check" or event.data.get("state") != "graded":
+            continue
+        run = _run(event)
+        shown: dict[tuple[str, str, str], list[CheckKept]] = {}
+        for check in run.checks:
+            if check.diagnosis and check.diagnosis not in NO_MISTAKE:
+                shown.setdefault((event.subject, check.task, check.diagnosis), []).append(check)
+        for key, checks in shown.items():
+            one = found.setdefault(key, Mistake(*key, run.at, run.at))
+            one.last, one.mended, one.raised = run.at, None, checks[0].raised
+            one.runs += 1
+            one.open |= {check.id for check in checks}
+        passed = {check.id for check in run.checks if check.passed}
+        for one in found.values():
+            if one.exercise == event.subject and one.open:
+                one.open -= passed
+                one.mended = one.mended if one.open else run.at
     return tuple(found.values())
-
-
-def _take(found: dict[tuple[str, str, str], Mistake], event: Event) -> None:
-    run = _run(event)
-    shown: dict[tuple[str, str, str], list[CheckKept]] = {}
-    for check in run.checks:
-        if check.diagnosis and check.diagnosis not in NO_MISTAKE:
-            shown.setdefault((event.subject, check.task, check.diagnosis), []).append(check)
-    for key, checks in shown.items():
-        one = found.setdefault(key, Mistake(*key, run.at, run.at))
-        one.last, one.mended, one.raised = run.at, None, checks[0].raised
-        one.runs += 1
-        one.open |= {check.id for check in checks}
-    passed = {check.id for check in run.checks if check.passed}
-    for one in found.values():
-        if one.exercise == event.subject and one.open:
-            one.open -= passed
-            if not one.open:
-                one.mended = run.at
 
 
 # ---
@@ -367,11 +361,8 @@ def lesson_events(store: Store | None, lesson: str, split: Mapping[str, str]) ->
     if store is None:
         return ()
     whole = store.events(subject=split[lesson]) if lesson in split else ()
-    kept = [
-        event
-        for event in whole
-        if event.kind in {"prediction", "cell"} or (event.kind == "lesson" and "blocks" not in event.data)
-    ]
+    kinds = {"prediction", "cell", "lesson"}
+    kept = [one for one in whole if one.kind in kinds and not (one.kind == "lesson" and "blocks" in one.data)]
     return (*kept, *store.events(subject=lesson))
 
 

@@ -115,13 +115,13 @@ def quiz_history(events: Iterable[Event]) -> QuizHistory:
     reviews: list[Review] = []
     for event in events:
         data: Mapping[str, Any] = event.data
+        seed = int(data.get("seed", 0))
         if event.kind == START:
-            attempt = _attempt(event)
-            attempts[attempt.id] = attempt
+            name = str(data.get("attempt", event.id))
+            questions = tuple(map(str, data.get("questions", ())))
+            attempts[name] = Attempt(name, seed, str(data.get("version", "")), questions, event.at)
         elif event.kind == REVIEW:
-            reviews.append(
-                Review(event.at, event.subject, int(data.get("seed", 0)), bool(data.get("right", False)))
-            )
+            reviews.append(Review(event.at, event.subject, seed, bool(data.get("right", False))))
         elif event.kind in {ANSWER, DONE} and data.get("attempt") in attempts:
             _add(attempts[str(data["attempt"])], event)
     return QuizHistory(tuple(attempts.values()), tuple(reviews))
@@ -147,17 +147,6 @@ def records(history: QuizHistory) -> list[dict[str, object]]:
     ]
 
 
-def _attempt(event: Event) -> Attempt:
-    data = event.data
-    return Attempt(
-        id=str(data.get("attempt", event.id)),
-        seed=int(data.get("seed", 0)),
-        version=str(data.get("version", "")),
-        questions=tuple(str(name) for name in data.get("questions", ())),
-        started=event.at,
-    )
-
-
 def _add(attempt: Attempt, event: Event) -> None:
     """An answer or the end of an attempt; the first of each counts, and nothing after the end."""
     if attempt.finished is not None:
@@ -168,7 +157,6 @@ def _add(attempt: Attempt, event: Event) -> None:
     attempt.finished = event.at
     attempt.score = int(event.data.get("score", 0))
     attempt.passed = bool(event.data.get("passed", False))
-    right = event.data.get("right", {})
-    attempt.right = (
-        {str(name): bool(value) for name, value in right.items()} if isinstance(right, dict) else {}
-    )
+    right = event.data.get("right")
+    if isinstance(right, dict):
+        attempt.right = {str(name): bool(value) for name, value in right.items()}

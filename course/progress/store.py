@@ -158,11 +158,8 @@ class Store:
 
         The damaged file is renamed, never removed.
         """
-        try:
+        with contextlib.suppress(IntegrityError):
             self.events()
-        except IntegrityError:
-            pass
-        else:
             return None
         names = numbered(self.path.with_name(f"{self.path.stem}.damaged{self.path.suffix}"))
         kept = next(path for path in names if not os.path.lexists(path))
@@ -203,11 +200,9 @@ class Store:
     def _prepare(self, database: sqlite3.Connection, *, create: bool) -> None:
         version = _version(database)
         if version > SCHEMA_VERSION:
-            raise MissingCapabilityError(
-                f"{self.path} was written by a newer version of the course (format {version}).",
-                help="Install that version or a later one; the file was not touched.",
-                code="progress_too_new",
-            )
+            problem = f"{self.path} was written by a newer version of the course (format {version})."
+            fix = "Install that version or a later one; the file was not touched."
+            raise MissingCapabilityError(problem, help=fix, code="progress_too_new")
         if version == 0 and create:
             database.execute("BEGIN IMMEDIATE")
             # Another process may have been first while this one waited for the lock.
@@ -220,14 +215,11 @@ class Store:
     def _explained(self, error: Exception) -> Exception:
         name = getattr(error, "sqlite_errorname", "") or ""
         if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
-            return MissingCapabilityError(
-                f"{self.path} is in use by another program.",
-                help="Wait for it to end, or end it, and run the command again.",
-                code="progress_busy",
-            )
-        if name.startswith(
-            ("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_FULL", "SQLITE_IOERR")
-        ):
+            problem = f"{self.path} is in use by another program."
+            fix = "Wait for it to end, or end it, and run the command again."
+            return MissingCapabilityError(problem, help=fix, code="progress_busy")
+        refused = ("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_FULL", "SQLITE_IOERR")
+        if name.startswith(refused):
             return _not_writable(self.path, str(error))
         return _damaged(self.path, one_line(str(error))[:200])
 
@@ -300,8 +292,6 @@ def _damaged(path: Path, reason: str) -> IntegrityError:
 
 
 def _not_writable(path: Path, reason: str) -> MissingCapabilityError:
-    return MissingCapabilityError(
-        f"{path} cannot be used ({reason}).",
-        help="Make the workspace writable, or copy it to a folder that is.",
-        code="not_writable",
-    )
+    problem = f"{path} cannot be used ({reason})."
+    fix = "Make the workspace writable, or copy it to a folder that is."
+    return MissingCapabilityError(problem, help=fix, code="not_writable")

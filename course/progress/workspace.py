@@ -78,11 +78,9 @@ class Workspace:
         for folder in (start, *start.parents):
             if (folder / MARKER).is_file():
                 return cls.read(folder)
-        raise NotFoundError(
-            "This folder is not inside a workspace.",
-            help="Make one with `course init my-course`, or name one with `-C DIR`.",
-            code="workspace_not_found",
-        )
+        problem = "This folder is not inside a workspace."
+        fix = "Make one with `course init my-course`, or name one with `-C DIR`."
+        raise NotFoundError(problem, help=fix, code="workspace_not_found")
 
     @classmethod
     def read(cls, root: Path) -> Workspace:
@@ -127,10 +125,9 @@ class Workspace:
 
     def has_file(self, place: str, module: str) -> bool:
         """Whether an exercise's module or notebook is there; where that cannot be seen, yes."""
-        try:
+        with contextlib.suppress(OSError):
             return any(self.path(place, module).with_suffix(kind).exists() for kind in (".py", ".ipynb"))
-        except OSError:
-            return True
+        return True
 
     def shown(self, path: Path) -> str:
         """``path`` as a person wants to read it: relative to the workspace where it lies inside."""
@@ -140,10 +137,9 @@ class Workspace:
 
     def given(self, place: str, name: str) -> bytes | None:
         """A file as it was last handed out; None if it never was."""
-        try:
+        with contextlib.suppress(OSError):
             return read_bytes(self._given_path(place, name), _MOST_GIVEN)
-        except OSError:
-            return None
+        return None
 
     def started(self) -> tuple[str, ...]:
         """Ids of the exercises that something was handed out for."""
@@ -191,7 +187,11 @@ class Workspace:
         relative = Path(self.shown(path)) if path.is_relative_to(self.root) else Path(path.name)
         try:
             data = path.read_bytes()
-            folder = _new_folder(self.state / "backups", f"{stamp}-{why}")
+            (self.state / "backups").mkdir(parents=True, exist_ok=True)
+            for folder in numbered(self.state / "backups" / f"{stamp}-{why}"):
+                with contextlib.suppress(FileExistsError):
+                    folder.mkdir()
+                    break
             copy = folder / relative
             copy.parent.mkdir(parents=True, exist_ok=True)
             _write_new(copy, data)
@@ -288,15 +288,6 @@ def _normal(data: bytes) -> bytes:
     return data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
 
 
-def _new_folder(parent: Path, name: str) -> Path:
-    parent.mkdir(parents=True, exist_ok=True)
-    for folder in numbered(parent / name):
-        with contextlib.suppress(FileExistsError):
-            folder.mkdir()
-            break
-    return folder
-
-
 def _read_marker(marker: Path) -> tuple[str, str]:
     """Course id and version out of a ``course.toml``."""
     try:
@@ -310,11 +301,9 @@ def _read_marker(marker: Path) -> tuple[str, str]:
         raise _bad_marker(marker, None, f"cannot be read: {error}.") from error
     version = table.get("format_version")
     if isinstance(version, int) and version > FORMAT_VERSION:
-        raise MissingCapabilityError(
-            f"{marker} was written by a newer version of the course (format {version}).",
-            help="Install that version or a later one; nothing here was touched.",
-            code="workspace_too_new",
-        )
+        said = f"{marker} was written by a newer version of the course (format {version})."
+        fix = "Install that version or a later one; nothing here was touched."
+        raise MissingCapabilityError(said, help=fix, code="workspace_too_new")
     course = table.get("course")
     if version != FORMAT_VERSION or not isinstance(course, dict):
         raise _bad_marker(marker, None, "format_version or [course] is missing.")
@@ -334,8 +323,6 @@ def _bad_marker(marker: Path, line: int | None, problem: str) -> ContentError:
 
 
 def _not_writable(path: Path, error: OSError) -> CourseError:
-    return MissingCapabilityError(
-        f"{path} cannot be written ({error.strerror or error}).",
-        help="Make the folder writable or free some space, or work in another folder.",
-        code="not_writable",
-    )
+    problem = f"{path} cannot be written ({error.strerror or error})."
+    fix = "Make the folder writable or free some space, or work in another folder."
+    return MissingCapabilityError(problem, help=fix, code="not_writable")

@@ -55,80 +55,55 @@ class AnswerFile:
             UsageError: an answer is missing, or is to a question or an option that is not there.
         """
         if self.seed is not None and self.seed != seed:
-            self.fail(
-                "seed",
-                f"these answers are for seed {self.seed}, and the questions of seed {seed} are asked.",
-                f"Leave --seed out, or print the others: course quiz take --questions --seed {seed}.",
-                "answers_for_other_seed",
-            )
+            other = f"these answers are for seed {self.seed}, and the questions of seed {seed} are asked."
+            fix = f"Leave --seed out, or print the others: course quiz take --questions --seed {seed}."
+            self.fail("seed", other, fix, "answers_for_other_seed")
         asked = {question.question: question for question in posed}
+        listed = ", ".join(asked)
         for name in self.answers:
+            if name in bank.ids and name not in asked:
+                fix = f"Remove the line; asked: {listed}."
+                self.fail(name, f"{name} is not asked now.", fix, "question_not_asked")
             if name not in asked:
-                self._unknown_question(name, list(asked), bank)
+                fix = meant(name, asked, f"The questions are {listed}.")
+                self.fail(name, f"there is no question {name[:60]!r}.", fix, "question_not_found")
         missing = [name for name in asked if self.answers.get(name, "") == ""]
         if missing:
             entry = f'a line {missing[0]} = "..." under [answers]'
             if _is_json(self.path):
                 entry = f'"{missing[0]}": "..." to "answers"'
-            self.fail(
-                "answers",
-                f"{counted(len(missing), 'answer')} {'is' if len(missing) == 1 else 'are'} missing:"
-                f" {', '.join(missing)}.",
-                f"Add {entry}; a guess counts like any answer.",
-                "answers_missing",
-            )
+            are = f"{counted(len(missing), 'answer')} {'is' if len(missing) == 1 else 'are'} missing"
+            fix = f"Add {entry}; a guess counts like any answer."
+            self.fail("answers", f"{are}: {', '.join(missing)}.", fix, "answers_missing")
         return {name: self._option(name, asked[name], bank, seed) for name in asked}
-
-    def _unknown_question(self, name: str, asked: list[str], bank: Bank) -> NoReturn:
-        if name in bank.ids:
-            self.fail(
-                name,
-                f"{name} is not asked now.",
-                f"Remove the line; asked: {', '.join(asked)}.",
-                "question_not_asked",
-            )
-        fix = meant(name, asked, f"The questions are {', '.join(asked)}.")
-        self.fail(name, f"there is no question {name[:60]!r}.", fix, "question_not_found")
 
     def _option(self, name: str, posed: PosedQuestion, bank: Bank, seed: int) -> str:
         given = self.answers[name]
         if isinstance(given, int) and not isinstance(given, bool):
             given = str(given)
         if not isinstance(given, str):
-            self.fail(
-                name,
-                f"the answer to {name} is not text.",
-                'Write an option\'s letter: "b".',
-                "answer_not_text",
-            )
+            fix = 'Write an option\'s letter: "b".'
+            self.fail(name, f"the answer to {name} is not text.", fix, "answer_not_text")
         choice = posed.choice(given)
         if choice is None:
-            self._unknown_option(name, given, posed, bank, seed)
+            options = ", ".join(f"{choice.letter} ({choice.id})" for choice in posed.choices)
+            variants = next(d.value.variant for d in bank.documents if d.value.id == name)
+            if any(given == option.id for variant in variants for option in variant.option):
+                fix = f"Use the file with the questions it was written for, or choose among {options}."
+                other = f"{given!r} answers {name} as another seed asks it, not as seed {seed} does."
+                self.fail(name, other, fix, "answers_for_other_seed")
+            none = f"{name} has no option {given[:60]!r}."
+            self.fail(name, none, f"Choose among {options}.", "option_not_found")
         return choice.id
-
-    def _unknown_option(self, name: str, given: str, posed: PosedQuestion, bank: Bank, seed: int) -> NoReturn:
-        options = ", ".join(f"{choice.letter} ({choice.id})" for choice in posed.choices)
-        variants = next(d.value.variant for d in bank.documents if d.value.id == name)
-        if any(given == option.id for variant in variants for option in variant.option):
-            self.fail(
-                name,
-                f"{given!r} answers {name} as another seed asks it, not as seed {seed} does.",
-                f"Use the file with the questions it was written for, or choose among {options}.",
-                "answers_for_other_seed",
-            )
-        self.fail(
-            name, f"{name} has no option {given[:60]!r}.", f"Choose among {options}.", "option_not_found"
-        )
 
     def _at(self, key: str) -> str:
         """``:line`` of a key, or nothing."""
-        if _is_json(self.path):
-            found = re.search(
-                rf"^.*?{re.escape(json.dumps(key, ensure_ascii=False))}\s*:", self.text, re.M | re.S
-            )
-            return f":{self.text.count(chr(10), 0, found.end()) + 1}" if key and found else ""
         if not key:
             return ""
+        if _is_json(self.path):
+            spelled = re.escape(json.dumps(key, ensure_ascii=False))
+            found = re.search(rf"^.*?{spelled}\s*:", self.text, re.M | re.S)
+            return f":{self.text.count(chr(10), 0, found.end()) + 1}" if found else ""
         where = (key,) if key in {"seed", "answers", "format_version"} else ("answers", key)
         return f":{LineMap(self.text).line(where)}"
 
@@ -146,18 +121,11 @@ def read_answers(path: Path) -> AnswerFile:
     file = AnswerFile(path, text, seed, answers if isinstance(answers, dict) else {})
     version = data.get("format_version", FORMAT_VERSION)
     if version != FORMAT_VERSION or isinstance(version, bool):
-        file.fail(
-            "format_version",
-            f"format_version is {version!r}, and this program knows {FORMAT_VERSION}.",
-            "Write 1, or install a newer version of the course.",
-        )
+        other = f"format_version is {version!r}, and this program knows {FORMAT_VERSION}."
+        file.fail("format_version", other, "Write 1, or install a newer version of the course.")
     unknown = sorted(set(data) - {"format_version", "seed", "answers"})
     if unknown:
-        file.fail(
-            "",
-            f"unknown key {unknown[0]!r} outside of the answers.",
-            _form(path),
-        )
+        file.fail("", f"unknown key {unknown[0]!r} outside of the answers.", _form(path))
     if not isinstance(answers, dict):
         file.fail("", "there is no table of answers.", _form(path))
     if seed is not None and (not isinstance(seed, int) or isinstance(seed, bool)):
@@ -169,24 +137,18 @@ def _read(path: Path) -> str:
     try:
         data = read_bytes(path)
     except OSError as error:
-        raise UsageError(
-            f"{path} cannot be read: {error.strerror or error}.",
-            help="Name a file of answers; `course quiz take --questions` prints one to fill in.",
-            code="answers_unreadable",
-        ) from None
+        problem = f"{path} cannot be read: {error.strerror or error}."
+        fix = "Name a file of answers; `course quiz take --questions` prints one to fill in."
+        raise UsageError(problem, help=fix, code="answers_unreadable") from None
     if len(data) > MAX_BYTES:
-        raise UsageError(
-            f"{path} is larger than {MAX_BYTES:,} bytes.",
-            help="Name a file of answers.",
-            code="answers_format",
-        )
+        large = f"{path} is larger than {MAX_BYTES:,} bytes."
+        raise UsageError(large, help="Name a file of answers.", code="answers_format")
     try:
         return data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise UsageError(
-            f"{path}:{line}: this is not UTF-8 text.", help="Save it as UTF-8.", code="answers_format"
-        ) from None
+        said = f"{path}:{line}: this is not UTF-8 text."
+        raise UsageError(said, help="Save it as UTF-8.", code="answers_format") from None
 
 
 def _parse_toml(path: Path, text: str) -> dict[str, Any]:
@@ -202,9 +164,8 @@ def _parse_json(path: Path, text: str) -> dict[str, Any]:
         names = [name for name, _ in pairs]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
-            raise UsageError(
-                f"{path}: {twice[:60]!r} is there twice.", help="Keep one of the two.", code="answers_format"
-            )
+            problem = f"{path}: {twice[:60]!r} is there twice."
+            raise UsageError(problem, help="Keep one of the two.", code="answers_format")
         return dict(pairs)
 
     try:
@@ -230,8 +191,4 @@ def _is_json(path: Path) -> bool:
 
 
 def _syntax(path: Path, line: int, problem: str) -> UsageError:
-    return UsageError(
-        f"{path}:{line}: this is {problem}.",
-        help=_form(path),
-        code="answers_format",
-    )
+    return UsageError(f"{path}:{line}: this is {problem}.", help=_form(path), code="answers_format")

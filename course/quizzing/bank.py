@@ -114,11 +114,9 @@ class Bank:
         """
         documents = read_questions(catalog.content.quiz)
         if not documents:
-            raise NotFoundError(
-                "This course has no quiz.",
-                help=f"Its questions would be in {catalog.content.quiz}.",
-                code="quiz_not_found",
-            )
+            problem = "This course has no quiz."
+            fix = f"Its questions would be in {catalog.content.quiz}."
+            raise NotFoundError(problem, help=fix, code="quiz_not_found")
         return cls(documents)
 
     @property
@@ -347,9 +345,8 @@ def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:
 
 def check_seed(seed: int) -> int:
     if not 0 <= seed <= MAX_SEED:
-        raise UsageError(
-            f"{seed} is not a seed.", help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed"
-        )
+        problem = f"{seed} is not a seed."
+        raise UsageError(problem, help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed")
     return seed
 
 
@@ -368,20 +365,15 @@ def fresh_seed(
     last = {name: bank.variant(name, seed) for name, seed in seen.items() if name in bank.ids}
     first = {document.value.id: document.value.variant[0].id for document in bank.documents}
 
-    def misses(seed: int, least: int) -> int:
-        """The number of questions for which a seed is unsuitable; stops counting at ``least``."""
-        count = 0
-        for name in bank.ids:
-            variant = bank.variant(name, seed)
-            count += variant == last[name] if name in last else variant != first[name]
-            if count >= least:
-                break
-        return count
+    def misses(seed: int) -> int:
+        """The number of questions for which a seed is unsuitable."""
+        variants = ((name, bank.variant(name, seed)) for name in bank.ids)
+        return sum(one == last[name] if name in last else one != first[name] for name, one in variants)
 
     new = [len(document.value.variant) for document in bank.documents if document.value.id not in last]
     best, least = draw(), len(bank.ids) + 1
     for _ in range(_TRIES + _PATIENCE * math.prod(new) * bool(new)):
-        if (missed := misses(seed := draw(), least)) < least:
+        if (missed := misses(seed := draw())) < least:
             best, least = seed, missed
         if not least:
             break

@@ -20,9 +20,8 @@ def fits(bank: Bank, attempt: Attempt) -> bool:
     if attempt.questions != bank.ids:
         return False
     posed = {question.question: question for question in bank.pose(attempt.seed)}
-    return all(
-        name in posed and posed[name].choice(option) is not None for name, option in attempt.answers.items()
-    )
+    answers = attempt.answers.items()
+    return all(name in posed and posed[name].choice(option) is not None for name, option in answers)
 
 
 def begun(bank: Bank, seed: int, version: str, record: Record) -> Attempt:
@@ -136,20 +135,16 @@ def faults_in(document: Document[Question]) -> Iterator[ContentError]:
     for index, variant in enumerate(document.value.variant):
         for case in range(variant.cases):
             try:
-                _check_case(document, index, case)
+                posed = pose_case(document, index, case)
+                if (clash := clashing(posed.choices)) is not None:
+                    one, other = (posed.choices[place] for place in clash)
+                    reads = f"option {other.id} reads {other.text!r}, and option {one.id} reads {one.text!r}"
+                    document.fail(
+                        ("variant", index, "option", clash[1], "text"),
+                        f"variant {posed.variant}: {reads}; these numbers are too close to tell apart.",
+                        fix="Change a formula, or the values it is computed from, so that options differ by "
+                        "more than 2 %.",
+                    )
             except ContentError as fault:
                 yield fault
                 break
-
-
-def _check_case(document: Document[Question], index: int, case: int) -> None:
-    posed = pose_case(document, index, case)
-    if (clash := clashing(posed.choices)) is None:
-        return
-    one, other = (posed.choices[place] for place in clash)
-    document.fail(
-        ("variant", index, "option", clash[1], "text"),
-        f"variant {posed.variant}: option {other.id} reads {other.text!r}, and option {one.id} reads "
-        f"{one.text!r}; these numbers are too close to tell apart.",
-        fix="Change a formula, or the values it is computed from, so that options differ by more than 2 %.",
-    )

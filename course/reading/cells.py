@@ -82,12 +82,11 @@ def textbook_for(sources: Iterable[str]) -> Textbook:
     light = {"numpy", *others} & _LIGHT.keys()
     packages = sorted(light.union(*(_LIGHT[name] for name in light)))
     absent = sorted(others - _LIGHT.keys())
-    return Textbook(_zipped(files), tuple(packages), tuple(absent))
-
-
-def imported(sources: Iterable[str]) -> frozenset[str]:
-    """The modules that these pieces of code name: as long as they are the same, so is the textbook."""
-    return frozenset(name for text in sources for name in _imports(text))
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for name, data in sorted(files.items()):
+            archive.writestr(zip_entry(name), data, zipfile.ZIP_DEFLATED)
+    return Textbook(out.getvalue(), tuple(packages), tuple(absent))
 
 
 def _files_of(name: str) -> Iterator[Path]:
@@ -114,14 +113,6 @@ def _imports(source: str) -> Iterator[str]:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
         elif not (isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)):
             pending += ast.iter_child_nodes(node)
-
-
-def _zipped(files: dict[str, bytes]) -> bytes:
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in sorted(files.items()):
-            archive.writestr(zip_entry(name), data, zipfile.ZIP_DEFLATED)
-    return out.getvalue()
 
 
 #: A lesson's own cell takes under two seconds; one that was changed may take this long before it is stopped.
@@ -226,7 +217,8 @@ class CellRunner:
         Raises:
             IsolationError: it cannot be started.
         """
-        wanted = imported(self._source(cell) for cell in self._cells)
+        # As long as these are the same, so is the textbook.
+        wanted = frozenset(name for cell in self._cells for name in _imports(self._source(cell)))
         if self._connection is not None and self._connection.alive:
             if wanted == self._imported:
                 return
@@ -272,8 +264,7 @@ class CellRunner:
     def interrupt(self) -> None:
         """Stop the cell that is running; what it printed so far is kept."""
         self._interrupted.set()
-        connection = self._connection
-        if connection is not None:
+        if (connection := self._connection) is not None:
             connection.deadline.end()
 
     def forget(self) -> None:
@@ -319,10 +310,9 @@ class CellRunner:
         seconds = perf_counter() - start
         whole = connection.output()
         printed, self._printed = whole[self._printed :], len(whole)
+        self._ran.pop(cell.key, None)
         if not error:
             self._ran[cell.key] = source
-        else:
-            self._ran.pop(cell.key, None)
         return CellOutput(printed.rstrip("\n"), error, seconds)
 
     def _why(self, failure: StudentFailure) -> str:

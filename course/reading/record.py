@@ -191,11 +191,6 @@ class CellState:
     error: str = ""
     seconds: float = 0.0
 
-    @property
-    def edited(self) -> bool:
-        """Its code changed since it ran."""
-        return self.ran is not None and self.ran != self.source
-
 
 class Writer:
     """Adds events to a record, one after the other, in a thread of its own."""
@@ -279,6 +274,12 @@ class InProgress:
         """The open prediction that is this block, or keeps it closed; None if there is none."""
         question = self.script.question_at(index)
         return question if question and question.key not in self._predictions else self.closed_by(index)
+
+    def answered_at(self, index: int) -> tuple[Question, Prediction] | None:
+        """The prediction that a block answers, with what its reader said; None if that was nothing."""
+        question = self.script.answered_at(index)
+        said = self.prediction(question) if question is not None else None
+        return (question, said) if question and said and not said.skipped else None
 
     def predict(self, question: Question, text: str) -> None:
         """Keep a prediction; an empty text is a skip. The first prediction stays."""

@@ -3,7 +3,6 @@
 import hashlib
 import os
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +11,7 @@ import typer
 
 from course.authoring import scaffold
 from course.authoring.audit import audit
-from course.authoring.coverage import Coverage, as_markdown, check_coverage, read_coverage, written_to
+from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
 from course.authoring.exercises import diagnosis
 from course.authoring.exercises.files import find_blanks, write_points, write_times
 from course.authoring.exercises.grading import write_pack
@@ -26,7 +25,7 @@ from course.cli.author.trying import refused
 from course.cli.frame import here
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.options import argument, exercise_ids, lesson_ids, option
-from course.cli.frame.registry import COMMANDS, group
+from course.cli.frame.registry import COMMANDS, find, group
 from course.cli.frame.replies import Envelope, filled
 from course.errors import ContentError, UsageError
 from course.printable import counted
@@ -132,27 +131,6 @@ def coverage(write: Annotated[bool, option("--write", "Write docs/coverage.md ag
     if write and not problems:
         page = written_to(catalog)
         write_atomically(page, as_markdown(table).encode())
-    _show_coverage(console, table, problems)
-    if page:
-        console.note(f"Wrote {shown(page, catalog)}.")
-    parts = tuple(
-        filled(CoverageRow, part, section=section.title, kind=section.kind)
-        for section in table.section
-        for part in section.parts
-    )
-    return console.answer(
-        filled(
-            AuthorCoverage,
-            table,
-            exit_code=1 if problems else 0,
-            parts=parts,
-            written=shown(page, catalog) if page else None,
-            problems=problems,
-        )
-    )
-
-
-def _show_coverage(console: Console, table: Coverage, problems: tuple[AuthorProblem, ...]) -> None:
     for section in table.section:
         console.heading(section.title)
         rows = [(part.what, part.word, ", ".join(part.where)) for part in section.parts]
@@ -162,6 +140,16 @@ def _show_coverage(console: Console, table: Coverage, problems: tuple[AuthorProb
         _show_problem(console, problem)
     found = counted(len(problems), "problem") if problems else "none is missing"
     console.line(f"{counted(len(table.parts), 'part')}, {table.source_lines} lines: {found}.")
+    if page:
+        console.note(f"Wrote {shown(page, catalog)}.")
+    parts = tuple(
+        filled(CoverageRow, part, section=section.title, kind=section.kind)
+        for section in table.section
+        for part in section.parts
+    )
+    code, written = 1 if problems else 0, shown(page, catalog) if page else None
+    reply = filled(AuthorCoverage, table, exit_code=code, parts=parts, written=written, problems=problems)
+    return console.answer(reply)
 
 
 def _show_problem(console: Console, problem: AuthorProblem) -> None:
@@ -179,14 +167,10 @@ def is_command(words: tuple[str, ...]) -> bool:
     if words[:1] == ("reflect",) and len(words) == 2:
         catalog = load_catalog()
         return words[1] in catalog.exercise_ids() and catalog.exercise(words[1]).rubric_path.is_file()
-    if entry is None or (not entry.is_group and len(words) > 1):
-        return False
-    if len(words) == 1:
-        return True
-    group = typer.main.get_group(import_module(f"course.cli.{entry.module}").app)
-    if words[1] not in group.commands:
-        return False
-    return all(word in (*SIMULATIONS, "--all") for word in words[2:])
+    if entry is None or len(words) == 1 or not entry.is_group:
+        return entry is not None and len(words) == 1
+    known = typer.main.get_group(find(entry.module, "app")).commands
+    return words[1] in known and all(word in (*SIMULATIONS, "--all") for word in words[2:])
 
 
 def load_catalog() -> Catalog:
@@ -390,15 +374,11 @@ def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
     looked = (
         f"{counted(len(report.lessons), 'lesson')}, {counted(len(report.exercises), 'exercise')}{among}, "
         f"{counted(len(report.questions), 'quiz question')}, {counted(len(report.scenes), 'scene')}, "
-        f"{counted(report.checks, 'check')}, "
-        f"{counted(report.graded, 'submission')} graded"
+        f"{counted(report.checks, 'check')}, {counted(report.graded, 'submission')} graded"
     )
     level = f" at {report.isolation}" if report.isolation else ""
-    if report.ok:
-        console.line(("All is well", "green"), f": {looked}{level} in {report.seconds:.1f} s.")
-    else:
-        found = counted(len(report.problems), "problem")
-        console.line((found, "red"), f" in {looked}{level} in {report.seconds:.1f} s.")
+    found = ("All is well", "green") if report.ok else (counted(len(report.problems), "problem"), "red")
+    console.line(found, f"{':' if report.ok else ' in'} {looked}{level} in {report.seconds:.1f} s.")
 
 
 @app.command(epilog="Example: course author build collisions")
@@ -425,9 +405,17 @@ def build(
     for exercise in chosen:
         try:
             made += [write_points(catalog, exercise), diagnosis.build(catalog, exercise)]
-        except ContentError:
-            _say_blanks(catalog, exercise)
-            raise
+        except ContentError:  # a file with blanks is often no TOML either, and not for that reason
+            blanks = Findings(catalog.content.root)
+            if not find_blanks(catalog, exercise.id, blanks):
+                raise
+            first = blanks.problems[0]
+            raise UsageError(
+                f"{exercise.id} has {counted(len(blanks.problems), 'blank')} to fill in first, such as"
+                f" {first.file}:{first.line}.",
+                help=f"`course author check {exercise.id}` lists them.",
+                code="unfinished_content",
+            ) from None
     made.append(write_times(catalog, chosen))
     written = [shown(path, catalog) for path in dict.fromkeys(made) if path]
     for exercise in chosen if accept else ():
@@ -449,19 +437,6 @@ def build(
     return console.answer(AuthorBuild(files=tuple(written)))
 
 
-def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
-    """A file with blanks is often no TOML either, and not for that reason."""
-    findings = Findings(catalog.content.root)
-    if find_blanks(catalog, exercise.id, findings):
-        first = findings.problems[0]
-        raise UsageError(
-            f"{exercise.id} has {counted(len(findings.problems), 'blank')} to fill in first, such as"
-            f" {first.file}:{first.line}.",
-            help=f"`course author check {exercise.id}` lists them.",
-            code="unfinished_content",
-        )
-
-
 @app.command(epilog="Example: course author mutants integrators")
 def mutants(name: _EachExercise = None) -> int:
     """Show the feedback for each wrong solution.
@@ -477,20 +452,11 @@ def mutants(name: _EachExercise = None) -> int:
         with meter(console) as on_progress:
             outcomes = run_mutants(catalog, exercise, on_progress=on_progress)
         _show_mutants(console, exercise, outcomes)
-        for outcome in outcomes:
-            mutant = outcome.mutant
-            rows.append(
-                filled(
-                    MutantRow,
-                    outcome,
-                    mutant,
-                    exercise=exercise.id,
-                    file=mutant.name,
-                    misconception=outcome.looks_like,
-                    check=outcome.check or outcome.by,
-                    faults=tuple(fault.message for fault in outcome.faults),
-                )
-            )
+        for one in outcomes:
+            faults = tuple(fault.message for fault in one.faults)
+            named = {"exercise": exercise.id, "file": one.mutant.name, "misconception": one.looks_like}
+            more = {"check": one.check or one.by, "faults": faults}
+            rows.append(filled(MutantRow, one, one.mutant, **named, **more))
     wrong = sum(bool(row.faults) for row in rows)
     said = f"{wrong} not caught as they should be." if wrong else "each is caught as it says."
     console.line(f"{counted(len(rows), 'mutant')}: {said}")
@@ -500,16 +466,13 @@ def mutants(name: _EachExercise = None) -> int:
 def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOutcome, ...]) -> None:
     for outcome in outcomes:
         mutant = outcome.mutant
-        console.heading(
-            f"{exercise.id}: {mutant.name}", f"breaks {mutant.task}, loses {in_points(outcome.lost)}"
-        )
-        if outcome.looks_like:
-            console.item("mistake", outcome.looks_like)
-        console.item("caught by", f"{outcome.by} with {outcome.diagnosis}")
-        if outcome.message:
-            console.item("reads", outcome.message)
-        if outcome.help:
-            console.item("advice", outcome.help)
+        breaks = f"breaks {mutant.task}, loses {in_points(outcome.lost)}"
+        console.heading(f"{exercise.id}: {mutant.name}", breaks)
+        caught = f"{outcome.by} with {outcome.diagnosis}"
+        told = {"mistake": outcome.looks_like, "caught by": caught, "reads": outcome.message}
+        for label, text in (told | {"advice": outcome.help}).items():
+            if text:
+                console.item(label, text)
         for fault in outcome.faults:
             console.item("wrong", f"{fault.message} {fault.fix}", style="red")
         console.blank()

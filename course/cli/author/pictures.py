@@ -4,6 +4,7 @@ A file beside the README's has the digest of each picture's source. A test compu
 takes seconds, and names each picture that is out of date.
 """
 
+import contextlib
 import hashlib
 import io
 import json
@@ -54,7 +55,9 @@ def pictures(
     if figure:
         return _keep(figure, root / "tests" / "fixtures" / "golden")
     folder = root / "docs" / "pictures"
-    known = _known(folder)
+    known: dict[str, str] = {}
+    with contextlib.suppress(OSError, ValueError):  # missing or damaged: make every picture again
+        known |= json.loads((folder / _MADE_FROM).read_text(encoding="utf-8"))
     stale = []
     for name, (source, picture) in PICTURES.items():
         digest = hashlib.sha256(source()).hexdigest()
@@ -78,9 +81,8 @@ def _keep(figures: list[str], folder: Path) -> int:
     from course.figures.looks import picture_and_words
 
     if not folder.is_dir():
-        raise UsageError(
-            f"There is no {folder}.", help="Figures belong to a checkout of the course: run this there."
-        )
+        problem = f"There is no {folder}."
+        raise UsageError(problem, help="Figures belong to a checkout of the course: run this there.")
     console = current()
     kept = {name: picture_and_words(name) for name in figures}
     for name, (picture, words) in kept.items():
@@ -90,29 +92,16 @@ def _keep(figures: list[str], folder: Path) -> int:
     return console.answer(AuthorPictures(stale=tuple(kept)))
 
 
-def _known(folder: Path) -> dict[str, str]:
-    try:
-        return dict(json.loads((folder / _MADE_FROM).read_text(encoding="utf-8")))
-    except (OSError, ValueError):  # missing or damaged: make every picture again
-        return {}
-
-
 def _run(*arguments: str, colour: bool = False) -> str:
     """The program's output in a terminal of a fixed width."""
     environ = {key: value for key, value in os.environ.items() if key not in {"NO_COLOR", "COURSE_CONTENT"}}
     environ |= {"COLUMNS": str(_COLUMNS), "TERM": "xterm-256color", "COLORTERM": "truecolor"}
     environ |= {"PYTHONUTF8": "1"} | ({"FORCE_COLOR": "1"} if colour else {})
-    done = subprocess.run(
-        [sys.executable, "-m", "course", *arguments],
-        env=environ,
-        capture_output=True,
-        check=False,
-        encoding="utf-8",
-    )
+    line = [sys.executable, "-m", "course", *arguments]
+    done = subprocess.run(line, env=environ, capture_output=True, check=False, encoding="utf-8")
     if done.returncode:
-        raise InternalError(
-            f"`course {' '.join(arguments)}` failed: {done.stderr.strip()[-300:]}", code="picture_failed"
-        )
+        problem = f"`course {' '.join(arguments)}` failed: {done.stderr.strip()[-300:]}"
+        raise InternalError(problem, code="picture_failed")
     return done.stdout
 
 
@@ -141,15 +130,12 @@ def _film_source() -> bytes:
         table = Path(folder) / "run.csv"
         _run("sandbox", "play", _SCENE, "--headless", "--csv", str(table), "--every", str(_EVERY))
         rows = [line.split(",") for line in table.read_text(encoding="utf-8").splitlines()]
-    rounded = "\n".join(",".join(map(_rounded, row)) for row in rows)
+    for row in rows:
+        for place, cell in enumerate(row):
+            with contextlib.suppress(ValueError):  # a heading or a name
+                row[place] = f"{round(float(cell), _DECIMALS) + 0.0:.{_DECIMALS}f}"
+    rounded = "\n".join(",".join(row) for row in rows)
     return rounded.encode() + Path(str(drawing.__file__)).read_bytes()
-
-
-def _rounded(cell: str) -> str:
-    try:
-        return f"{round(float(cell), _DECIMALS) + 0.0:.{_DECIMALS}f}"
-    except ValueError:  # a heading or a name
-        return cell
 
 
 def _film() -> bytes:

@@ -20,22 +20,16 @@ def refused(commands: Sequence[str]) -> dict[int, str]:
 
     They run in this order in a process of their own: the loading of the program is paid for once.
     """
-    environ = {**os.environ, "COLUMNS": "80"}
+    path = os.pathsep.join(filter(None, (str(Path(__file__).parents[3]), os.environ.get("PYTHONPATH"))))
+    environ, line = {**os.environ, "COLUMNS": "80", "PYTHONPATH": path}, [sys.executable, "-m", __name__]
     with tempfile.TemporaryDirectory(prefix="course-try-") as folder:
+        asked = json.dumps([folder, *commands])
         done = subprocess.run(
-            [sys.executable, "-m", __name__],
-            input=json.dumps([folder, *commands]),
-            env={**environ, "PYTHONPATH": os.pathsep.join(filter(None, (_ROOT, environ.get("PYTHONPATH"))))},
-            capture_output=True,
-            check=False,
-            encoding="utf-8",
+            line, input=asked, env=environ, capture_output=True, check=False, encoding="utf-8"
         )
     if done.returncode:
         return {0: done.stderr.strip()[-500:]}
     return {int(place): said for place, said in json.loads(done.stdout).items()}
-
-
-_ROOT = str(Path(__file__).parents[3])
 
 
 def _main() -> None:
@@ -52,9 +46,8 @@ def _main() -> None:
                 code = run(words) if program == "course" else 2
             except ValueError as error:  # quotes that do not end
                 program, code = str(error), 2
-        said = (
-            err.getvalue().strip() or out.getvalue().strip() or f"{program}: it is no command of the course"
-        )
+        none = f"{program}: it is no command of the course"
+        said = err.getvalue().strip() or out.getvalue().strip() or none
         if code not in _FINE or "Traceback" in said:
             failed[place] = said.split("\n")[0]
     json.dump(failed, sys.stdout)

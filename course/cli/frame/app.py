@@ -104,8 +104,10 @@ def run(arguments: Sequence[str]) -> int:
             kind = f"A fault in the course, not in your work ({type(error).__name__})"
             message = f"{kind}; the details are in {write_report(error)}."
             code = _say(console, line, InternalError.exit_code, "internal", message)
-    if console.json and not console.emitted:
-        _emit(console, line, code)
+    if console.json and not console.emitted:  # one object, of a command that adds nothing to its exit code
+        from course.cli.frame.replies import Bare, schema_of_line
+
+        console.emit(Bare(schema=schema_of_line(line), ok=code == 0, exit_code=code))
     try:
         console.flush()
     except OSError as error:
@@ -123,9 +125,19 @@ def _dispatch(line: Line, console: Console) -> int:
     if line.problem:
         raise UsageError(line.problem, help="Try `course --help`.")
     if line.version:
-        return _version(console)
-    if line.settings.directory is not None:
-        _enter(line.settings.directory)
+        from course.cli.frame.replies import Version
+
+        python = ".".join(map(str, sys.version_info[:3]))
+        console.line(f"course {__version__} (Python {python})")
+        console.emit(Version(version=__version__, python=python))
+        return 0
+    if (directory := line.settings.directory) is not None:
+        try:
+            os.chdir(directory)
+        except OSError as error:
+            problem = f"-C names {directory}, which cannot be entered ({error.strerror})."
+            fix = "Name a folder that exists."
+            raise NotFoundError(problem, help=fix, code="directory_not_found") from error
     if line.rest[:1] in {("--show-completion",), ("--install-completion",)} and len(line.rest) == 2:
         return _completion(console, *line.rest)
     if not console.json:
@@ -176,24 +188,13 @@ def _root(
     return home()
 
 
-def _version(console: Console) -> int:
-    python = ".".join(map(str, sys.version_info[:3]))
-    console.line(f"course {__version__} (Python {python})")
-    if console.json:
-        from course.cli.frame.replies import Version
-
-        console.emit(Version(version=__version__, python=python))
-    return 0
-
-
 def _completion(console: Console, option: str, shell: str) -> int:
     """For the named shell; typer's own options take no name, and find out which shell they run in."""
     from typer.completion import get_completion_script, install  # type: ignore[attr-defined]
 
     if shell not in SHELLS:
-        raise UsageError(
-            f"{option} {shell[:20]}: no such shell is known.", help=f"Known: {', '.join(SHELLS)}."
-        )
+        problem = f"{option} {shell[:20]}: no such shell is known."
+        raise UsageError(problem, help=f"Known: {', '.join(SHELLS)}.")
     if option == "--show-completion":
         variable = "_COURSE_COMPLETE"
         console.raw(get_completion_script(prog_name="course", complete_var=variable, shell=shell) + "\n")
@@ -203,31 +204,13 @@ def _completion(console: Console, option: str, shell: str) -> int:
     return 0
 
 
-def _enter(directory: str) -> None:
-    try:
-        os.chdir(directory)
-    except OSError as error:
-        raise NotFoundError(
-            f"-C names {directory}, which cannot be entered ({error.strerror}).",
-            help="Name a folder that exists.",
-            code="directory_not_found",
-        ) from error
-
-
-def _say(
-    console: Console,
-    line: Line,
-    exit_code: int,
-    code: str,
-    message: str,
-    help: str = "",  # noqa: A002
-) -> int:
+def _say(console: Console, line: Line, exit_code: int, code: str, message: str, advice: str = "") -> int:
     """Report an error in place of a result."""
-    console.error(message, help)
+    console.error(message, advice)
     if console.json and (console.streams or not console.emitted):
         from course.cli.frame.replies import ErrorBody, ErrorReply, schema_of_line
 
-        body = ErrorBody(code=code, message=message, help=help)
+        body = ErrorBody(code=code, message=message, help=advice)
         try:
             console.emit_line(ErrorReply(schema=schema_of_line(line), exit_code=exit_code, error=body))
         except OSError as full:  # a pipe that nobody reads is dealt with where the line began
@@ -245,13 +228,6 @@ def _refused(console: Console, line: Line, error: OSError) -> int:
     return _say(console, line, kind.exit_code, kind.default_code, message, advice)
 
 
-def _emit(console: Console, line: Line, code: int) -> None:
-    """Keep the promise of one object for a command that has nothing to add to its exit code."""
-    from course.cli.frame.replies import Bare, schema_of_line
-
-    console.emit(Bare(schema=schema_of_line(line), ok=code == 0, exit_code=code))
-
-
 def _usage(console: Console, line: Line, error: Any) -> int:
     """A line that typer's parser refused. Known by its shape: the class moved between typer's versions."""
     context = getattr(error, "ctx", None)
@@ -263,21 +239,15 @@ def _usage(console: Console, line: Line, error: Any) -> int:
     message = str(error.format_message()).strip()
     for theirs, ours in (("a valid float", "a number"), ("a valid integer", "a whole number")):
         message = message.replace(f"is not {theirs}", f"is not {ours}")
-    choices = _choices(error, context)
-    known = f"Known: {', '.join(choices)}. " if choices else ""
+    choices: list[str] = []
+    if (missing := getattr(error, "param", None)) and type(error).__name__.startswith("MissingParameter"):
+        # What could stand where an argument or an option is missing: what the shell would complete there.
+        choices = [str(item.value) for item in missing.shell_complete(context, "")] if context else []
+    known = f"Known: {', '.join(choices)}. " if 0 < len(choices) <= _MOST_CHOICES else ""
     return _say(console, line, UsageError.exit_code, "usage", message, f"{known}See `{path} --help`.")
 
 
 _MOST_CHOICES = 20
-
-
-def _choices(error: Any, context: Any) -> list[str]:
-    """What could stand where an argument or an option is missing: what the shell would complete there."""
-    param = getattr(error, "param", None)
-    if param is None or context is None or not type(error).__name__.startswith("MissingParameter"):
-        return []
-    found = [str(item.value) for item in param.shell_complete(context, "")]
-    return found if len(found) <= _MOST_CHOICES else []
 
 
 # ---

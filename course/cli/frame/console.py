@@ -180,7 +180,10 @@ class Console:
         stderr: TextIO | None = None,
         environ: dict[str, str] | None = None,
     ) -> None:
-        self.settings = settings or Settings()
+        self.settings = settings = settings or Settings()
+        #: Only the result and errors are wanted.
+        self.quiet = settings.quiet
+        self.json = settings.json
         self._environ = dict(os.environ) if environ is None else environ
         for stream in (sys.stdout, sys.stderr):
             # A console that cannot show a character shows a question mark, not a traceback.
@@ -188,29 +191,17 @@ class Console:
                 stream.reconfigure(errors="replace")
         self._out = Stream(stdout or sys.stdout)
         self._err = Stream(stderr or sys.stderr)
-        self._human: Stream = self._err if self.settings.json else self._out
-        shapeless = self.settings.json or self.settings.plain or self._environ.get("TERM") == "dumb"
+        self._human: Stream = self._err if self.json else self._out
+        shapeless = self.json or settings.plain or self._environ.get("TERM") == "dumb"
         self.fancy = not shapeless and bool(self._environ.get("FORCE_COLOR") or self._human.isatty())
+        #: There are no boxes, no colour and no motion.
+        self.plain = not self.fancy
         self._rich: RichConsole | None = None
         self.emitted = False
         #: Several lines are the answer, and an error may still be the last.
         self.streams = False
         #: Set while ``course go`` runs a command.
         self.led = False
-
-    @property
-    def json(self) -> bool:
-        return self.settings.json
-
-    @property
-    def plain(self) -> bool:
-        """True if there are no boxes, no colour and no motion."""
-        return not self.fancy
-
-    @property
-    def quiet(self) -> bool:
-        """True if only the result and errors are wanted."""
-        return self.settings.quiet
 
     @property
     def interactive(self) -> bool:
@@ -230,10 +221,11 @@ class Console:
     @property
     def draws(self) -> bool:
         """True if the output can show a picture made of half blocks: many colours, and the letter itself."""
-        if not self.fancy or self.quiet or self.rich().no_color:
+        if not self.fancy or self.quiet:
             return False
-        encoding = getattr(self._human, "encoding", None) or ""
-        return self.rich().color_system in {"256", "truecolor"} and encoding.lower().startswith("utf")
+        from course.cli.frame.pictures import has_half_blocks
+
+        return has_half_blocks(self.rich())
 
     @property
     def wraps(self) -> bool:
@@ -340,10 +332,7 @@ class Console:
         """Rows under headings; facts under a row's name in a narrow window, one line each in plain output."""
         if not self.fancy:
             for row in rows:
-                facts = [
-                    f"{head}: {bare(cell)}" for head, cell in zip(headers, row, strict=True) if bare(cell)
-                ]
-                self._fact("; ".join(facts), hanging=2)
+                self._fact("; ".join(_named(headers, row, ": ")), hanging=2)
             return
         if self.width < _NARROW:
             self._facts(headers, rows)
@@ -369,10 +358,7 @@ class Console:
     def _facts(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
         for first, *rest in rows:
             self.line(first)
-            facts = [
-                f"{head} {bare(cell)}" for head, cell in zip(headers[1:], rest, strict=True) if bare(cell)
-            ]
-            self.line(", ".join(facts), indent=2)
+            self.line(", ".join(_named(headers[1:], rest, " ")), indent=2)
 
     def figure(self, make: Builder) -> None:
         """Draw a figure as well as this terminal can show it; nothing where it cannot.
@@ -450,8 +436,7 @@ class Console:
     def answer(self, reply: Any) -> int:
         """End a command with its ``Envelope``, whose exit code is the command's."""
         self.emit(reply)
-        code: int = reply.exit_code
-        return code
+        return int(reply.exit_code)
 
     def emit_line(self, body: msgspec.Struct) -> None:
         """Write one line of JSON Lines, for the two commands that answer with several."""
@@ -553,6 +538,11 @@ class Console:
         self._err.flush()
 
 
+def _named(headers: Sequence[str], row: Sequence[Piece], between: str) -> list[str]:
+    """The cells of a row that hold something, each after its heading."""
+    return [head + between + bare(cell) for head, cell in zip(headers, row, strict=True) if bare(cell)]
+
+
 def encode(body: msgspec.Struct) -> bytes:
     """``body`` as one line of JSON in UTF-8; numbers that JSON has not are "nan", "inf" and "-inf".
 
@@ -596,29 +586,20 @@ def meter(console: Console) -> Iterator[Callable[[int, int, str], None]]:
     Elsewhere, after the same patience, a line is written whenever the work turns to something new: the part
     of its name before a colon.
     """
-    if console.quiet:
-        yield lambda _done, _total, _what: None
-    elif console.fancy:
-        with _bar(console) as step:
-            yield step
-    else:
-        seen: set[str] = set()
-        started = time.monotonic()
+    seen: set[str] = set()
+    started = time.monotonic()
 
-        def say(done: int, total: int, what: str) -> None:
-            topic = what.partition(":")[0]
-            if what and topic not in seen and time.monotonic() - started > PATIENCE:
-                seen.add(topic)
-                console.note(f"Working on {topic}: {done} of {total} steps done.")
+    def say(done: int, total: int, what: str) -> None:
+        topic = what.partition(":")[0]
+        if what and topic not in seen and time.monotonic() - started > PATIENCE:
+            seen.add(topic)
+            console.note(f"Working on {topic}: {done} of {total} steps done.")
 
+    if console.plain or console.quiet:
         yield say
-
-
-@contextlib.contextmanager
-def _bar(console: Console) -> Iterator[Callable[[int, int, str], None]]:
+        return
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-    started = time.monotonic()
     columns = (BarColumn(bar_width=20), TextColumn("{task.completed}/{task.total}"), TimeRemainingColumn())
     progress = Progress(*columns, TextColumn("{task.description}"), console=console.rich(), transient=True)
     task = progress.add_task("", total=None)

@@ -22,6 +22,7 @@ from course.errors import CourseError, MissingCapabilityError, NotFoundError, Un
 from course.handed_in.limits import MAX_FILE
 from course.ids import WARM_UPS
 from course.progress.history import History, Standing, history_of
+from course.progress.store import Event
 from course.progress.workspace import Recorder, Workspace, write_atomically
 from course.strangers import read_bytes
 
@@ -80,26 +81,21 @@ class Here:
     def _say_renumbered(self, chosen: Exercise, number: str) -> None:
         """Of a number that meant another exercise before 2.0, one that was begun here then: name both."""
         before = next((one for one in self.catalog.exercises() if str(one.number) == number), chosen)
-        if before is not chosen and self._begun_before_2_0(before):
+        begun: tuple[Event, ...] = ()
+        with suppress(CourseError):  # a damaged record is another command's to tell
+            begun = self.workspace.store.events("start", before.id) if before is not chosen else ()
+        if any(str(event.data.get("version")).startswith("1.") for event in begun):
             current().warn(
                 f"{number} is {chosen.id}, by the order of the lessons; before 2.0 it was {before.id}, "
                 f"which is {self.catalog.place_of(before)} now."
             )
 
-    def _begun_before_2_0(self, exercise: Exercise) -> bool:
-        with suppress(CourseError):  # a damaged record is another command's to tell
-            begun = self.workspace.store.events("start", exercise.id)
-            return any(str(event.data.get("version")).startswith("1.") for event in begun)
-        return False
-
     def nothing_started(self) -> NotFoundError:
         """The error that no exercise has been started; its advice names the first one."""
         first = next(iter(self.catalog.exercises()), None)  # in the order they are done
-        return NotFoundError(
-            "No exercise has been started here.",
-            help=f"Start one: `course start {first.id}`." if first else "This course has no exercises.",
-            code="nothing_started",
-        )
+        problem = "No exercise has been started here."
+        fix = f"Start one: `course start {first.id}`." if first else "This course has no exercises."
+        return NotFoundError(problem, help=fix, code="nothing_started")
 
     def started(self) -> tuple[Exercise, ...]:
         """The exercises that have been started, in the order they are done, and then the warm-ups."""
@@ -110,25 +106,23 @@ class Here:
     def misnamed(self, exercise: Exercise) -> str:
         """A file beside the student's whose name differs in capitals only; "" if there is none."""
         own = self.workspace.path(exercise.place, exercise.module)
-        try:
+        with suppress(OSError):
             others = [path for path in sorted(own.parent.iterdir()) if path.name != own.name]
             alike = [path for path in others if path.name.lower() == own.name.lower()]
             # Where capitals do not count, as on Windows and macOS, it is the student's file itself.
             return next((path.name for path in alike if not (own.exists() and path.samefile(own))), "")
-        except OSError:
-            return ""
+        return ""
 
     def moved(self, exercise: Exercise) -> str:
         """The exercise's file, or its notebook, in a folder of another name; "" if there is none."""
         if self.workspace.path(exercise.place, exercise.module).parent.exists():
             return ""
         names = exercise.module, Path(exercise.module).with_suffix(".ipynb").name
-        try:
+        with suppress(OSError):
             folders = [path for path in sorted(self.workspace.root.iterdir()) if path.is_dir()]
             found = (path / name for path in folders for name in names if (path / name).is_file())
             return next((f"{path.parent.name}/{path.name}" for path in found), "")
-        except OSError:
-            return ""
+        return ""
 
     def source(self, exercise: Exercise) -> bytes:
         """The student's file.
@@ -144,18 +138,13 @@ class Here:
             if not path.is_file():
                 raise UngradableError(f"{shown} is not a file.", help="Move it away.", code="no_file")
             if path.stat().st_size > MAX_FILE:
-                raise UngradableError(
-                    f"{shown} is larger than {MAX_FILE:,} bytes.",
-                    help="Keep data out of the file; the exercise needs none.",
-                    code="too_large",
-                )
+                problem = f"{shown} is larger than {MAX_FILE:,} bytes."
+                fix = "Keep data out of the file; the exercise needs none."
+                raise UngradableError(problem, help=fix, code="too_large")
             return read_bytes(path)
         except OSError as error:
-            raise UngradableError(
-                f"{shown} cannot be read ({error.strerror or error}).",
-                help="Check its permissions.",
-                code="unreadable",
-            ) from error
+            problem = f"{shown} cannot be read ({error.strerror or error})."
+            raise UngradableError(problem, help="Check its permissions.", code="unreadable") from error
 
     def _missing(self, exercise: Exercise, path: Path, shown: str) -> UngradableError:
         if path.is_symlink():
@@ -182,10 +171,9 @@ class Here:
 
     def known_history(self, exercise: Exercise) -> History:
         """As far as it can be read; a record that cannot be read is warned about elsewhere."""
-        try:
+        with suppress(CourseError):
             return self.history(exercise)
-        except CourseError:
-            return history_of(())
+        return history_of(())
 
     def standing(self) -> Standing:
         """How far the student is with everything, as it is now; raises what ``history`` raises."""
@@ -212,21 +200,19 @@ class Here:
 
     def _last_worked_on(self) -> str:
         """The exercise last started, checked by name or asked a hint for; "" if there is none."""
-        try:
-            events = self.workspace.store.events()
-        except CourseError:
-            return ""
         kinds = {"start", "check", "hint"}
-        return next((e.subject for e in reversed(events) if e.kind in kinds and not e.data.get("all")), "")
+        with suppress(CourseError):
+            events = reversed(self.workspace.store.events())
+            return next((e.subject for e in events if e.kind in kinds and not e.data.get("all")), "")
+        return ""
 
 
 def cwd() -> Path:
     try:
         return Path.cwd()
     except OSError:
-        raise NotFoundError(
-            "The current folder no longer exists.", help="Change to another one.", code="directory_not_found"
-        ) from None
+        problem = "The current folder no longer exists."
+        raise NotFoundError(problem, help="Change to another one.", code="directory_not_found") from None
 
 
 def named(path: Path | str) -> Path:
@@ -241,9 +227,8 @@ def named(path: Path | str) -> Path:
             full.stat()
     except (RuntimeError, OSError) as error:
         why = getattr(error, "strerror", None) or f"there is no home folder {Path(path).parts[0]}"
-        raise UsageError(
-            f"{path} cannot be used: {why}.", help="Name another file or folder.", code="bad_file_name"
-        ) from None
+        problem = f"{path} cannot be used: {why}."
+        raise UsageError(problem, help="Name another file or folder.", code="bad_file_name") from None
     return full
 
 
@@ -268,10 +253,9 @@ def catalog_of(workspace: Workspace) -> Catalog:
 
 def find_workspace() -> Here | None:
     """The workspace of the current folder, or None outside of one."""
-    try:
+    with suppress(NotFoundError):
         return Here.load()
-    except NotFoundError:
-        return None
+    return None
 
 
 def here_or_outside() -> tuple[Here | None, Catalog]:
@@ -365,9 +349,6 @@ def _keep(path: Path, old: bytes, why: str) -> Path:
                 file.write(old)
                 break
         except OSError as error:
-            raise UsageError(
-                f"{path} is there, and no copy of it can be kept ({error.strerror or error}).",
-                help="Name another file.",
-                code="not_writable",
-            ) from error
+            problem = f"{path} is there, and no copy of it can be kept ({error.strerror or error})."
+            raise UsageError(problem, help="Name another file.", code="not_writable") from error
     return copy

@@ -8,7 +8,7 @@ parsed to list them.
 import ast
 import importlib
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -44,34 +44,24 @@ def global_options(arguments: Sequence[str]) -> Line:
     directory: str | None = None
     rest: list[str] = []
     problem = ""
-    position = 0
-    while position < len(arguments):
-        word = arguments[position]
-        position += 1
+    words = iter(arguments)
+    for word in words:
         if word == "--":
-            rest += [word, *arguments[position:]]
-            break
-        if word in _FLAGS:
+            rest += [word, *words]
+        elif word in _FLAGS:
             found.add(_FLAGS[word])
-        elif word == "-C":
-            if position == len(arguments):
-                problem = "-C needs the folder to work in."
-                break
-            directory = _below(directory, arguments[position])
-            position += 1
         elif word.startswith("-C"):
-            directory = _below(directory, word.removeprefix("-C"))
+            folder = word.removeprefix("-C") or next(words, None)
+            if folder is None:
+                problem = "-C needs the folder to work in."
+            else:  # two in a row add up, the second below the first
+                directory = folder if directory is None else str(Path(directory) / folder)
         else:
             rest.append(word)
     settings = Settings(
         json="json" in found, plain="plain" in found, quiet="quiet" in found, directory=directory
     )
     return Line(settings=settings, rest=tuple(rest), version="version" in found, problem=problem)
-
-
-def _below(first: str | None, second: str) -> str:
-    """Two ``-C`` in a row add up, the second below the first."""
-    return second if first is None else str(Path(first) / second)
 
 
 # ---
@@ -135,8 +125,11 @@ figure_ids = _key_of("course.figures.registry", "FIGURES")
 scenario_ids = _key_of("course.engines.scenarios", "SCENARIOS")
 
 
+_SCENES = Path(__file__).parents[2] / "sandbox" / "scenes"
+
+
 def scene_ids(incomplete: str) -> list[str]:
-    return _beginning(incomplete, (path.stem for path in _scenes().glob("*.toml")))
+    return _beginning(incomplete, (path.stem for path in _SCENES.glob("*.toml")))
 
 
 def notebook_ids(incomplete: str) -> list[str]:
@@ -165,11 +158,9 @@ def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
     """The names that ``--set`` takes for the simulation on the line, with the equals sign."""
     from course.simulations.registry import get
 
-    try:
-        chosen = get(_given(ctx, "name"))
-    except NotFoundError:
-        return []
-    return _beginning(incomplete, (f"{one.name}=" for one in chosen.parameters))
+    with suppress(NotFoundError):
+        return _beginning(incomplete, (f"{one.name}=" for one in get(_given(ctx, "name")).parameters))
+    return []
 
 
 def scene_settings(ctx: Any, incomplete: str) -> list[str]:
@@ -177,21 +168,19 @@ def scene_settings(ctx: Any, incomplete: str) -> list[str]:
     from course.strangers import read_bytes, toml
 
     name = _given(ctx, "scene")
-    path = Path(name) if name.endswith(".toml") else _scenes() / f"{name}.toml"
-    try:
+    path = Path(name) if name.endswith(".toml") else _SCENES / f"{name}.toml"
+    with suppress(OSError, ValueError):
         found = toml(read_bytes(path).decode()).get("parameter", ())
-    except (OSError, ValueError):
-        return []
-    return _beginning(incomplete, (f"{one['name']}=" for one in found))
+        return _beginning(incomplete, (f"{one['name']}=" for one in found))
+    return []
 
 
 def submitted_ids(ctx: Any, incomplete: str) -> list[str]:
     """Students who handed something in to the folder on the line."""
-    try:
-        found = [entry.name for entry in Path(_given(ctx, "submissions")).iterdir() if entry.is_dir()]
-    except OSError:
-        return []
-    return _beginning(incomplete, found)
+    with suppress(OSError):
+        folders = (entry for entry in Path(_given(ctx, "submissions")).iterdir() if entry.is_dir())
+        return _beginning(incomplete, (folder.name for folder in folders))
+    return []
 
 
 def _column(query: str) -> Callable[[Any, str], list[str]]:
@@ -203,12 +192,13 @@ def _column(query: str) -> Callable[[Any, str], list[str]]:
         from course.strangers import no_programs
 
         path = Path(_given(ctx, "out"), "gradebook.sqlite").resolve()
-        try:
-            with closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book:
-                no_programs(book, millions=5)
-                return _beginning(incomplete, (str(value) for (value,) in book.execute(query)))
-        except (sqlite3.Error, UnicodeDecodeError):
-            return []
+        with (
+            suppress(sqlite3.Error, UnicodeDecodeError),
+            closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book,
+        ):
+            no_programs(book, millions=5)
+            return _beginning(incomplete, (str(value) for (value,) in book.execute(query)))
+        return []
 
     return complete
 
@@ -231,8 +221,7 @@ def _given(ctx: Any, name: str) -> str:
     A line that ends in an option without its value cannot be parsed. The arguments that the parser had read
     by then have no names yet.
     """
-    value = ctx.params.get(name) or (ctx.args[0] if ctx.args else "")
-    return str(value)
+    return str(ctx.params.get(name) or (ctx.args[0] if ctx.args else ""))
 
 
 def _of_exercises(ctx: Any, name: str) -> list[Path]:
@@ -245,15 +234,10 @@ def _in_content(folder: str, *patterns: str) -> list[Path]:
     """Files and folders of the course's content; none where it cannot be found."""
     from course.catalog.locate import content
 
-    try:
+    with suppress(CourseError, OSError, ValueError):
         root: Path = getattr(content(), folder)
         return sorted(path for pattern in patterns for path in root.glob(pattern))
-    except (CourseError, OSError, ValueError):
-        return []
-
-
-def _scenes() -> Path:
-    return Path(__file__).parents[2] / "sandbox" / "scenes"
+    return []
 
 
 def grade_lists(incomplete: str) -> list[str]:

@@ -127,7 +127,7 @@ def picture(
 ) -> RenderableType | None:
     """A figure as this terminal can show it best; None if it cannot, and only words are left."""
     protocol = protocol_of(console, environ)
-    if protocol is None and not _has_half_blocks(console):
+    if protocol is None and not has_half_blocks(console):
         return None
     from course.figures.style import file_of
     from course.figures.terminal import in_cells
@@ -154,7 +154,7 @@ def _letter_of(console: Console) -> int:
     return max(1, width // columns) if width and columns else _LETTER
 
 
-def _has_half_blocks(console: Console) -> bool:
+def has_half_blocks(console: Console) -> bool:
     """Whether there are enough colours, and the half-block letter."""
     enough = console.is_terminal and not console.no_color and console.color_system in ("256", "truecolor")
     return enough and console.encoding.lower().replace("-", "").startswith("utf")

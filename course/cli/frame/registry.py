@@ -8,6 +8,7 @@ import importlib
 import os
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -117,10 +118,8 @@ def understood(words: tuple[str, ...]) -> tuple[str, ...]:
         return words
     first, rest = words[0], words[1:]
     if first in _NOTHING_TO_LEAVE:
-        raise UsageError(
-            "There is nothing to leave: every command ends by itself.",
-            help="In a lesson, in `course watch` and in the sandbox, the key q leaves.",
-        )
+        problem = "There is nothing to leave: every command ends by itself."
+        raise UsageError(problem, help="In a lesson, in `course watch` and in the sandbox, the key q leaves.")
     if first == "help":
         return (*understood(rest), "--help")
     return (*ALSO[first], *rest) if first in ALSO else words
@@ -128,10 +127,9 @@ def understood(words: tuple[str, ...]) -> tuple[str, ...]:
 
 def content_is_whole() -> bool:
     """Whether graders and solutions are here; where the course itself cannot be found, that is said later."""
-    try:
+    with suppress(CourseError):
         return content().is_checkout
-    except CourseError:
-        return True
+    return True
 
 
 class LazyGroup(TyperGroup):
@@ -157,12 +155,8 @@ class LazyGroup(TyperGroup):
         entry = COMMANDS.get(cmd_name)
         if entry is None:
             return None
-        return TyperCommand(
-            name=cmd_name,
-            help=entry.summary,
-            rich_help_panel=entry.panel,
-            rich_markup_mode=self.rich_markup_mode,
-        )
+        mode = self.rich_markup_mode
+        return TyperCommand(cmd_name, help=entry.summary, rich_help_panel=entry.panel, rich_markup_mode=mode)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The real command, for the one that is run or completed."""
@@ -187,12 +181,9 @@ def group(summary: str) -> typer.Typer:
 
 def build(*, fancy: bool) -> typer.Typer:
     """The empty program: its commands come from ``COMMANDS``."""
+    markup: Any = "rich" if fancy else None
     return typer.Typer(
-        name="course",
-        cls=LazyGroup,
-        invoke_without_command=True,
-        rich_markup_mode="rich" if fancy else None,
-        **OPTIONS,
+        name="course", cls=LazyGroup, invoke_without_command=True, rich_markup_mode=markup, **OPTIONS
     )
 
 

@@ -156,11 +156,8 @@ def schema(
         return console.answer(Schemas(schemas=found))
     tag = next((tag for tag in found if name in {tag, _short(tag)}), None)
     if tag is None:
-        raise NotFoundError(
-            f"There is no reply called {name[:80]!r}.",
-            help="`course schema` lists them.",
-            code="schema_not_found",
-        )
+        problem = f"There is no reply called {name[:80]!r}."
+        raise NotFoundError(problem, help="`course schema` lists them.", code="schema_not_found")
     document = schema_of(tag)
     console.raw(msgspec.json.format(msgspec.json.encode(document), indent=2).decode() + "\n")
     return console.answer(Schema(name=tag, document=document))

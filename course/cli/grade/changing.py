@@ -12,19 +12,7 @@ from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids
 from course.cli.frame.replies import Envelope, filled
-from course.cli.grade.options import (
-    Isolation,
-    Jobs,
-    Out,
-    Reason,
-    Yes,
-    agreed,
-    in_words,
-    levels,
-    moved_scores,
-    points,
-    show_roster,
-)
+from course.cli.grade import options as opt
 from course.cli.grade.running import checks_gave, show_unjudged
 from course.errors import UsageError
 from course.grading.exports.grades import grade_line, utc
@@ -53,7 +41,7 @@ _SHOWN = 20
 
 
 def override(
-    out: Out,
+    out: opt.Out,
     student: Annotated[str, argument("STUDENT", complete=student_ids)],
     exercise: Annotated[str, argument("EXERCISE", complete=graded_ids)],
     score: Annotated[float | None, option("--score X", "The points that count.")] = None,
@@ -67,9 +55,8 @@ def override(
     penalty touches it.
     """
     if (score is None) != lift:
-        raise UsageError(
-            "Give either --score and --reason, or --lift.", help="See `course grade override -h`."
-        )
+        problem = "Give either --score and --reason, or --lift."
+        raise UsageError(problem, help="See `course grade override -h`.")
     console = current()
     with previewed(out) if dry_run else open_results(out, writing=True) as results:
         student = results.called(student)
@@ -83,10 +70,9 @@ def override(
     if now is None:
         console.line(f"{one_line(student)} {exercise}: nothing was handed in, and no score counts.")
     else:
-        counts = (
-            f"{points(now.score)} of {format_points(now.max_score)} {'would count' if dry_run else 'counts'}"
-        )
-        console.line((f"{one_line(student)} {exercise}: {counts}; {checks_gave(now)}.", "bold"))
+        scored = f"{opt.points(now.score)} of {format_points(now.max_score)}"
+        counts = f"{scored} {'would count' if dry_run else 'counts'}; {checks_gave(now)}"
+        console.line((f"{one_line(student)} {exercise}: {counts}.", "bold"))
         if score is not None:
             console.note("The student can read the reason: it is on their page and in exports for students.")
     if dry_run:
@@ -119,7 +105,7 @@ class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
 
 
 def late(
-    out: Out,
+    out: opt.Out,
     policy: Annotated[
         Path | None, option("--policy FILE", "Late policy (TOML) to apply from now on.")
     ] = None,
@@ -131,7 +117,7 @@ def late(
     ] = None,
     roster: Annotated[Path | None, option("--roster FILE", "Class list, for its extension_days.")] = None,
     clear: Annotated[bool, option("--clear", "Remove the late policy.")] = False,
-    reason: Reason = "",
+    reason: opt.Reason = "",
     dry_run: Annotated[bool, option("--dry-run", "Show whose score would change; change nothing.")] = False,
 ) -> int:
     """Set the late policy, and show who is late.
@@ -162,11 +148,8 @@ def late(
                 book.add_times(known, replace=True)
         results = Results(book)
         handed_in = [item for item in results.all() if item.result.number]
-        found = [
-            filled(LateOne, item, submitted_at=utc(item.submitted_at) or None)
-            for item in handed_in
-            if item.late is not None or item.flagged_late
-        ]
+        late_ones = [item for item in handed_in if item.late is not None or item.flagged_late]
+        found = [filled(LateOne, one, submitted_at=utc(one.submitted_at) or None) for one in late_ones]
         unknown_time = sum(item.submitted_at is None for item in handed_in) if results.policy else 0
         unknown = _unknown(results, known)
         unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
@@ -177,8 +160,8 @@ def late(
         )
     if not console.json:
         _show_late(console, results, found, unknown_time, unknown)
-        show_roster(console, people.file if people else "", (), dropped)
-        for line in moved_scores(moved):
+        opt.show_roster(console, people.file if people else "", (), dropped)
+        for line in opt.moved_scores(moved):
             console.line(line, indent=2)
         if moved or dry_run:
             would = "would change" if dry_run else "changed"
@@ -205,18 +188,13 @@ def _times(
     ids = [item.id for item in results.exercises() if item.id != "quiz"]
     name = exercise or (ids[0] if len(ids) == 1 else "")
     if name not in ids:
-        raise UsageError(
-            f"{listed.path} is Moodle's worksheet of one assignment; which exercise is it?",
-            help=f"Add --exercise, one of {', '.join(ids)}.",
-            code="needs_exercise",
-        )
+        problem = f"{listed.path} is Moodle's worksheet of one assignment; which exercise is it?"
+        raise UsageError(problem, help=f"Add --exercise, one of {', '.join(ids)}.", code="needs_exercise")
     deadlines = {one.exercise: one.due for one in (results.policy.deadline if results.policy else ())}
     due = deadlines.get(name, deadlines.get("*"))
     if due is None or due.tzinfo is None:
-        raise UsageError(
-            f"{listed.path} says no time zone, and there is no deadline for {name} to take it from.",
-            help="Add --policy FILE.",
-        )
+        problem = f"{listed.path} says no time zone, and there is no deadline for {name} to take it from."
+        raise UsageError(problem, help="Add --policy FILE.")
     people = read_roster(listed.path)
     found = people.match(results.students(), results.downloads)[0]
     students = {person.moodle_key: student for student, person in found.items()}
@@ -225,13 +203,9 @@ def _times(
 
 def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
     """Whose penalty depends on whether the clock was changed since the deadline."""
-    exercises = {time.exercise for time in known}
-    listed = {time.student for time in known}
-    return [
-        one_line(item.student)
-        for item in results.all()
-        if item.student in listed and item.exercise in exercises and results.hangs_on_the_clock(item)
-    ]
+    exercises, listed = {time.exercise for time in known}, {time.student for time in known}
+    mine = (one for one in results.all() if one.student in listed and one.exercise in exercises)
+    return [one_line(item.student) for item in mine if results.hangs_on_the_clock(item)]
 
 
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:
@@ -321,7 +295,7 @@ class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=Tr
 
 
 def assign(
-    out: Out,
+    out: opt.Out,
     student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
     file: Annotated[
         str | None, argument("FILE", "A name from the list, or a path; a path into a zip has a slash.")
@@ -332,9 +306,9 @@ def assign(
     accept_names: Annotated[bool, option("--accept-names", "Accept every proposed match.")] = False,
     reason: Annotated[str, option("--reason TEXT", "Kept with each result.")] = "",
     dry_run: Annotated[bool, option("--dry-run", "Grade and show, but store nothing.")] = False,
-    jobs: Jobs = 1,
-    isolation: Isolation = "auto",
-    yes: Yes = False,
+    jobs: opt.Jobs = 1,
+    isolation: opt.Isolation = "auto",
+    yes: opt.Yes = False,
 ) -> int:
     """Assign a file to a student, and grade it.
 
@@ -342,10 +316,8 @@ def assign(
     that each file defines, and the proposed match. No file is renamed; who decided, when and why is kept.
     """
     if (student is None) != (file is None) or (student is not None and accept_names):
-        raise UsageError(
-            "Give STUDENT and FILE, or --accept-names, or neither for a list.",
-            help="See `course grade assign -h`.",
-        )
+        problem = "Give STUDENT and FILE, or --accept-names, or neither for a list."
+        raise UsageError(problem, help="See `course grade assign -h`.")
     console = current()
     done: list[Assigned] = []
     waiting = 0
@@ -354,7 +326,7 @@ def assign(
             left = assigning.unsettled(results)
             waiting = len({item.student for item in results.all() if item.waiting})
     else:
-        level, at_least = levels(isolation)
+        level, at_least = opt.levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "a trial" if dry_run else "")
         grade = partial(batch.grade_all, graders=jobs)
 
@@ -371,7 +343,7 @@ def assign(
                     )  # fmt: skip
                 return done, assigning.unsettled(results)
 
-        done, left = agreed(console, assigned, yes=yes)
+        done, left = opt.agreed(console, assigned, yes=yes)
     broke = unjudged(one for item in done for one in broken_checks(item.after))
     if not console.json:
         _show_assigned(console, done, dry_run=dry_run)
@@ -379,36 +351,29 @@ def assign(
         _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
-    assigned_ones, unsettled = tuple(map(_assigned_one, done)), tuple(map(_unsettled_one, left))
+    unsettled = []
+    for item in left:
+        files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
+        unsettled.append(filled(UnsettledOne, item, reason=item.found.reason, files=files))
+    ones = tuple(map(_assigned_one, done))
     return console.answer(
-        GradeAssign(dry_run=dry_run, assigned=assigned_ones, unsettled=unsettled, unjudged=broke)
+        GradeAssign(dry_run=dry_run, assigned=ones, unsettled=tuple(unsettled), unjudged=broke)
     )
 
 
 def _assigned_one(item: Assigned) -> AssignedOne:
-    one, before = item.assignment, item.before
-    return filled(
-        AssignedOne,
-        one,
-        file=one.name,
-        score_before=before.score if before else None,
-        score_after=item.after.score,
-        state_before=before.verdict.state if before else "missing",
-        state_after=item.after.verdict.state,
-    )
-
-
-def _unsettled_one(item: Unsettled) -> UnsettledOne:
-    files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
-    return filled(UnsettledOne, item, reason=item.found.reason, files=files)
+    one, before, after = item.assignment, item.before, item.after
+    scores = {"score_before": before.score if before else None, "score_after": after.score}
+    was = before.verdict.state if before else "missing"
+    states = {"state_before": was, "state_after": after.verdict.state}
+    return filled(AssignedOne, one, file=one.name, **scores, **states)
 
 
 def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:
     for item in done:
-        one, after = item.assignment, item.after
-        was = item.before.verdict.state if item.before else "missing"
-        scored = f"{points(after.score)} of {format_points(after.max_score)}"
-        words = f"{was} -> {after.verdict.state}, {scored}; from {quoted(one.name)}"
+        one, after = _assigned_one(item), item.after
+        scored = f"{opt.points(after.score)} of {format_points(after.max_score)}"
+        words = f"{one.state_before} -> {one.state_after}, {scored}; from {quoted(one.file)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
@@ -451,7 +416,7 @@ class GradeLog(Envelope, tag="course.grade-log/1", frozen=True, kw_only=True):
 
 
 def log(
-    out: Out,
+    out: opt.Out,
     student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
     exercise: Annotated[str | None, argument("EXERCISE", complete=graded_ids)] = None,
 ) -> int:
@@ -480,7 +445,7 @@ def log(
         words = f"{decision.at}, {decision.who}, {about or 'the class'}"
         words += f": {decision.reason}" if decision.reason else ""
         console.item(decision.kind, one_line(words), width=10)
-        before, after = (in_words(one, student, exercise) for one in (decision.before, decision.after))
+        before, after = (opt.in_words(one, student, exercise) for one in (decision.before, decision.after))
         if decision.kind == "lift":  # what is kept has no score: the graders' counts, whatever it is then
             after = "the graders' score"
         if before != after:

@@ -35,6 +35,7 @@ from course.scoring.verdict import LARGEST_SEED
 
 #: Rows of a list; of what is lost, all but what no terminal keeps.
 _SHOWN, _MOST_LOST = 20, 200
+_LEFT_OUT = "Left out, without a row or an id in the roster"
 
 
 class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=True):
@@ -103,9 +104,8 @@ def export(
     if format == AUTOGRADER:
         written: Written | None = _autograder(out, output, exercises, seed, timeout)
     elif out is None:
-        raise UsageError(
-            "This format needs OUT.", help="Name the folder that `course grade run --out` wrote."
-        )
+        problem = "This format needs OUT."
+        raise UsageError(problem, help="Name the folder that `course grade run --out` wrote.")
     else:
         people = read_roster(roster) if roster else None
         if missing not in {"blank", "zero"}:
@@ -137,7 +137,11 @@ def _from_gradebook(
                 console.warn(f"With {found.roster.file}, a score changes: {line}")
             for student in found.dropped:
                 console.warn(f"Not in {found.roster.file}, leaves the roster: {one_line(student)}")
-            _print_lines(console, results, options)
+            selection = select(results, options)
+            for effective in selection.each():  # with --json, JSON Lines are the answer itself
+                console.emit_line(grade_line(effective, results.course))
+            for student in selection.written.unmatched:
+                console.warn(f"{_LEFT_OUT}: {one_line(student)}")
             return None, found
         written = write(results, name, out, output, options)
         is_new = people is not None and opened.book.meta().get("roster") != found.roster.dump()
@@ -151,23 +155,13 @@ def _from_gradebook(
     return written, found
 
 
-def _print_lines(console: Console, results: Results, options: ExportOptions) -> None:
-    """With --json, JSON Lines are the answer itself."""
-    selection = select(results, options)
-    for effective in selection.each():
-        console.emit_line(grade_line(effective, results.course))
-    for student in selection.written.unmatched:
-        console.warn(f"Left out, without a row or an id in the roster: {one_line(student)}")
-
-
 def _assignments(given: list[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for text in given:
         name, equals, number = text.partition("=")
         if not (name and equals and number) or name in found:
-            raise UsageError(
-                f"--assignment is {text!r}.", help="It takes EXERCISE=ID, once for each exercise."
-            )
+            problem = f"--assignment is {text!r}."
+            raise UsageError(problem, help="It takes EXERCISE=ID, once for each exercise.")
         found[name] = number
     return found
 
@@ -194,24 +188,13 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
         console.emit(filled(GradeExport, written, found, format=name, paths=paths))
         return
     if STDOUT in written.paths:  # what else there is to say must not get into the file
-        for text in (
-            *written.notes,
-            *(
-                f"Left out, without a row or an id in the roster: {one_line(one)}"
-                for one in written.unmatched
-            ),
-        ):
+        for text in (*written.notes, *(f"{_LEFT_OUT}: {one_line(one)}" for one in written.unmatched)):
             console.warn(text)
         return
     for path in written.paths:
         console.line((f"Wrote {path}.", "bold"))
-    for label, listed in (
-        ("Left out, without a row or an id in the roster", written.unmatched),
-        (
-            f"Without a score, a fault of the grader; run {command('grade', 'rerun', out)}",
-            written.without_grade,
-        ),
-    ):
+    broken = f"Without a score, a fault of the grader; run {command('grade', 'rerun', out)}"
+    for label, listed in ((_LEFT_OUT, written.unmatched), (broken, written.without_grade)):
         if listed:
             console.line(f"{label}: {len(listed)}")
         for entry in listed[:_SHOWN]:
@@ -267,24 +250,20 @@ def similar(
     Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
     layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
     """
-    console = current()
-    catalog = load_catalog()
+    console, catalog = current(), load_catalog()
     with open_results(out) as results, console.working("Comparing"):
         found = compare(results, catalog, tuple(exercise or ()), at_least=share)
     target = output or out / "similar.html"
     write_bytes(target, page(found).encode("utf-8"))
-    if console.json:
-        pairs = tuple(
-            filled(
-                SimilarPair, one, first=one.first.label, second=one.second.label, share=round(one.share, 4)
-            )
-            for one in found.pairs
-        )
-        groups = tuple(filled(SimilarGroup, one, share=round(one.share, 4)) for one in found.groups)
-        return console.answer(filled(GradeSimilar, found, pairs=pairs, groups=groups, page=str(target)))
-    _show_similar(console, found)
-    console.note(f"Side by side: {target}")
-    return 0
+    if not console.json:
+        _show_similar(console, found)
+        console.note(f"Side by side: {target}")
+    pairs = []
+    for one in found.pairs:
+        labels = {"first": one.first.label, "second": one.second.label}
+        pairs.append(filled(SimilarPair, one, **labels, share=round(one.share, 4)))
+    groups = tuple(filled(SimilarGroup, one, share=round(one.share, 4)) for one in found.groups)
+    return console.answer(filled(GradeSimilar, found, pairs=tuple(pairs), groups=groups, page=str(target)))
 
 
 def _show_similar(console: Console, found: Similar) -> None:
@@ -295,15 +274,12 @@ def _show_similar(console: Console, found: Similar) -> None:
     if found.groups[_SHOWN:]:
         console.line(f"and {counted(len(found.groups) - _SHOWN, 'more group')}", indent=2)
     for pair in found.pairs[:_SHOWN]:
-        both = f"{one_line(pair.first.label)} and {one_line(pair.second.label)}"
-        console.item(
-            f"{pair.share:.0%}", f"{both}, {pair.exercise}, {counted(pair.lines, 'line')} alike", width=5
-        )
+        both = f"{one_line(pair.first.label)} and {one_line(pair.second.label)}, {pair.exercise}"
+        console.item(f"{pair.share:.0%}", f"{both}, {counted(pair.lines, 'line')} alike", width=5)
     if len(found.pairs) > _SHOWN:
         console.line(f"and {counted(len(found.pairs) - _SHOWN, 'more pair')}", indent=2)
-    console.line(
-        (f"{counted(len(found.pairs), 'pair')} among {counted(found.compared, 'submission')}.", "bold")
-    )
+    among = counted(found.compared, "submission")
+    console.line((f"{counted(len(found.pairs), 'pair')} among {among}.", "bold"))
     if found.left_out:
         console.note(f"{counted(found.left_out, 'more pair')} not listed; raise --share.")
     if found.unreadable:
@@ -333,9 +309,8 @@ def salvage(
     """
     console = current()
     if to.exists():
-        raise UsageError(
-            f"{to} exists already; nothing was changed.", help="Name a new folder.", code="out_exists"
-        )
+        problem = f"{to} exists already; nothing was changed."
+        raise UsageError(problem, help="Name a new folder.", code="out_exists")
     folder = private_folder() if dry_run else to
     make_folder(folder)
     try:
@@ -366,9 +341,7 @@ def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool)
         console.item(name, words, width=12)
     for entry in told.lost[:_MOST_LOST]:
         console.line(f"lost: {one_line(entry)}")
-    console.line(
-        (f"{len(told.lost)} known to be lost." if told.lost else "Nothing is known to be lost.", "bold")
-    )
+    console.line((f"{len(told.lost) or 'Nothing is'} known to be lost.", "bold"))
     if not dry_run:
         with open_results(to) as results:
             only = [word for one in results.exercises() for word in ("--exercise", one.id)]

@@ -42,9 +42,8 @@ def _share(text: str | float) -> float:
     except ValueError:
         share = -1.0
     if rest or not 0 <= share <= 1:
-        raise UsageError(
-            f"--share is {text!r}.", help="It takes a number from 0 to 1, or a percentage: 0.6 or 60%."
-        )
+        problem = f"--share is {text!r}."
+        raise UsageError(problem, help="It takes a number from 0 to 1, or a percentage: 0.6 or 60%.")
     return share
 
 
@@ -113,9 +112,8 @@ def agreed(console: Console, attempt: Callable[[str], T], *, yes: bool) -> T:
         else:
             console.line(f"{error.message} {FOREIGN}")
             if not console.confirm("Do you trust whoever made this gradebook, and run them?"):
-                raise UsageError(
-                    "Nothing was run, and nothing was changed.", code="foreign_graders"
-                ) from None
+                problem = "Nothing was run, and nothing was changed."
+                raise UsageError(problem, code="foreign_graders") from None
         return attempt(error.sha256)
 
 
@@ -141,10 +139,9 @@ def show_change(console: Console, change: Change) -> None:
     if change.raw_before is None or change.raw_after is None:
         return  # of what no check judged, none has changed
     for check in change.checks:
-        delta = f", {check.points_after - check.points_before:+g} points"
-        console.item(
-            check.id, f"{check.before or 'no such check'} -> {check.after or 'gone'}{delta}", indent=4
-        )
+        became = f"{check.before or 'no such check'} -> {check.after or 'gone'}"
+        delta = f"{check.points_after - check.points_before:+g} points"
+        console.item(check.id, f"{became}, {delta}", indent=4)
 
 
 def moved_scores(moved: Sequence[ScoreChange]) -> Iterator[str]:
@@ -164,12 +161,10 @@ def show_roster(console: Console, file: str, moved: Sequence[ScoreChange], dropp
     for line in moved_scores(moved):
         console.line(line, indent=2)
     if dropped:
-        leave = (
-            f"1 student is not in {file} and leaves"
-            if len(dropped) == 1
-            else f"{len(dropped)} students are not in {file} and leave"
-        )
-        console.line(f"{leave} the roster: {some([one_line(name) for name in dropped], _MOST)}")
+        one = len(dropped) == 1
+        who = f"{len(dropped)} student{' is' if one else 's are'} not in {file}"
+        names = some([one_line(name) for name in dropped], _MOST)
+        console.line(f"{who} and {'leaves' if one else 'leave'} the roster: {names}")
 
 
 def points(score: float | None, most: float | None = None) -> str:
@@ -202,10 +197,7 @@ def in_words(text: str, student: str | None = None, exercise: str | None = None)
         return one_line(", ".join(filter(None, words)))
     with suppress(msgspec.MsgspecError, RecursionError):
         rows = msgspec.json.decode(text, type=list[tuple[str, str, float | None]])
-        shown = [
-            f"{who} {what} {points(score)}"
-            for who, what, score in rows
-            if student in {None, who} and exercise in {None, what}
-        ]
+        about = [one for one in rows if student in {None, one[0]} and exercise in {None, one[1]}]
+        shown = [f"{who} {what} {points(score)}" for who, what, score in about]
         return one_line("; ".join(shown[:_FEW] + ["..."] * (len(shown) > _FEW)))
     return one_line(text[:_SHOWN])

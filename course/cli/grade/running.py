@@ -14,24 +14,7 @@ from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids, submitted_ids
 from course.cli.frame.replies import Envelope, filled
-from course.cli.grade.options import (
-    Against,
-    Isolation,
-    Jobs,
-    Layout,
-    LocalCluster,
-    Out,
-    Protection,
-    RosterFile,
-    Scheduler,
-    Yes,
-    agreed,
-    in_words,
-    levels,
-    points,
-    show_change,
-    show_roster,
-)
+from course.cli.grade import options as opt
 from course.errors import INTERRUPTED, CourseError, InternalError, NotFoundError, UsageError
 from course.grading.exports.grades import grade_line
 from course.grading.gradebook.records import Decision, Result
@@ -80,20 +63,20 @@ def run(
     submissions: Annotated[Path, argument("SUBMISSIONS", "One folder per student.")],
     out: Annotated[Path, option("--out OUT", "Folder for the results; must be new.")],
     exercise: Annotated[list[str] | None, option("--exercise ID", "Grade these only.", exercise_ids)] = None,
-    jobs: Jobs = 1,
+    jobs: opt.Jobs = 1,
     timeout: Annotated[float, option("--timeout S", "CPU seconds per check.", min=0.1, max=60.0)] = 10.0,
     resume: Annotated[bool, option("--resume", "Finish the run that is in OUT.")] = False,
     only: Annotated[list[str] | None, option("--only STUDENT", complete=submitted_ids)] = None,
-    isolation: Protection = "auto",
+    isolation: opt.Protection = "auto",
     seed: Annotated[
         int | None,
         option("--seed", "Draw the same hidden inputs as an earlier run.", min=0, max=LARGEST_SEED),
     ] = None,
-    layout: Layout = "auto",
-    roster: RosterFile = None,
-    local_cluster: LocalCluster = None,
-    scheduler: Scheduler = None,
-    yes: Yes = False,
+    layout: opt.Layout = "auto",
+    roster: opt.RosterFile = None,
+    local_cluster: opt.LocalCluster = None,
+    scheduler: opt.Scheduler = None,
+    yes: opt.Yes = False,
 ) -> int:
     """Grade a folder of submissions.
 
@@ -103,7 +86,7 @@ def run(
     """
     console = current()
     _only_one_way(jobs, local_cluster, scheduler)
-    level, at_least = levels(isolation)
+    level, at_least = opt.levels(isolation)
     terms = Terms(level, at_least, timeout)
     catalog = load_catalog()
     catalog.content.instructors()  # before a roster is read, and perhaps corrected, for nothing
@@ -122,10 +105,15 @@ def run(
         graders = _graders(jobs, local_cluster, scheduler)
         with graders as grade, _progress(console, catalog.ref, reached) as report:
             summary = grade_class(submissions, out, catalog, mine, report, grade=grade)
-            return summary, _would_change(console, summary, out, catalog, terms, grade)
+            if not summary.edited:
+                return summary, None
+            # Who would get another score from the present graders, which a resumed run does not use.
+            again = RerunOptions(dry_run=True, level=level, at_least=at_least)
+            with open_results(out) as book, console.working("Grading with the edited graders, to compare"):
+                return summary, regrade(book, catalog, again, grade=grade)
 
     try:
-        summary, tried = agreed(console, grading, yes=yes)
+        summary, tried = opt.agreed(console, grading, yes=yes)
     except KeyboardInterrupt:
         raise _interrupted(reached, out) from None
     _show_summary(console, summary, out, options, tried)
@@ -145,29 +133,16 @@ def _interrupted(reached: list[int], out: Path) -> CourseError:
     return told
 
 
-def _would_change(
-    console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
-) -> Regraded | None:
-    """The students who would get another score from the present graders, which a resumed run does not use."""
-    if not summary.edited:
-        return None
-    options = RerunOptions(dry_run=True, level=terms.level, at_least=terms.at_least)
-    with open_results(out) as results, console.working("Grading with the edited graders, to compare"):
-        return regrade(results, catalog, options, grade=grade)
-
-
 def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out: Path) -> None:
     if tried is None:
         return
     changes = tried.changes
     names = ", ".join(summary.edited)
     console.line((f"The graders were edited after these scores were given: {names}.", "bold"))
-    colon = ":" if changes else "."
-    console.line(
-        f"No score was changed by that. With the present graders, {len(changes)} would change{colon}"
-    )
+    would = f"{len(changes)} would change{':' if changes else '.'}"
+    console.line(f"No score was changed by that. With the present graders, {would}")
     for change in changes[:_MOST_TROUBLED]:
-        show_change(console, change)
+        opt.show_change(console, change)
     if len(changes) > _MOST_TROUBLED:
         console.line(f"and {len(changes) - _MOST_TROUBLED} more.", indent=2)
     show_faults(console, tried, out)
@@ -178,17 +153,12 @@ def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out
 
 def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -> None:
     if local_cluster is not None and scheduler is not None:
-        raise UsageError(
-            "--local-cluster and --scheduler name two clusters.",
-            help="Name one of them.",
-            code="two_clusters",
-        )
+        problem = "--local-cluster and --scheduler name two clusters."
+        raise UsageError(problem, help="Name one of them.", code="two_clusters")
     if jobs > 1 and (local_cluster is not None or scheduler is not None):
-        raise UsageError(
-            "-j is for a run without a cluster.",
-            help="--local-cluster N says how many; a cluster elsewhere grades on all the workers it has.",
-            code="jobs_and_cluster",
-        )
+        problem = "-j is for a run without a cluster."
+        fix = "--local-cluster N says how many; a cluster elsewhere grades on all the workers it has."
+        raise UsageError(problem, help=fix, code="jobs_and_cluster")
 
 
 def _graders(jobs: int, local_cluster: int | None, scheduler: str | None) -> AbstractContextManager[GradeAll]:
@@ -239,17 +209,17 @@ class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True
 
 
 def rerun(
-    out: Out,
+    out: opt.Out,
     dry_run: Annotated[bool, option("--dry-run", "Show what would change; change nothing.")] = False,
     everything: Annotated[bool, option("--all", "Also regrade results that the same graders gave.")] = False,
-    jobs: Jobs = 1,
+    jobs: opt.Jobs = 1,
     timeout: Annotated[
         float | None, option("--timeout S", "As in the run if left out.", min=0.1, max=60.0)
     ] = None,
-    isolation: Isolation = "auto",
-    against: Against = "",
+    isolation: opt.Isolation = "auto",
+    against: opt.Against = "",
     reason: Annotated[str, option("--reason TEXT", "Kept with the regrading.")] = "",
-    yes: Yes = False,
+    yes: opt.Yes = False,
 ) -> int:
     """Grade again, with the present graders or earlier ones.
 
@@ -258,7 +228,7 @@ def rerun(
     results stay beside the new ones, and overrides still count.
     """
     console = current()
-    level, at_least = levels(isolation)
+    level, at_least = opt.levels(isolation)
     options = RerunOptions(dry_run, everything, level, at_least, timeout, against, reason)
     catalog = load_catalog()
 
@@ -267,7 +237,7 @@ def rerun(
         with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
             return regrade(results, catalog, mine, grade=partial(batch.grade_all, graders=jobs))
 
-    done = agreed(console, grading, yes=yes)
+    done = opt.agreed(console, grading, yes=yes)
     if not console.json:
         _show_rerun(console, done, out, dry_run=dry_run)
     code = InternalError.exit_code if done.faults else 0
@@ -276,7 +246,7 @@ def rerun(
 
 def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -> None:
     for change in done.changes:
-        show_change(console, change)
+        opt.show_change(console, change)
     would = "would change" if dry_run else "changed"
     console.line((f"{done.regraded - done.faults} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
@@ -294,7 +264,7 @@ def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -
 
 
 def explain(
-    out: Out,
+    out: opt.Out,
     student: Annotated[str, argument("STUDENT", complete=student_ids)],
     exercise: Annotated[str, argument("EXERCISE", complete=graded_ids)],
 ) -> int:
@@ -322,7 +292,7 @@ def explain(
     if console.json:
         console.emit(grade_line(found, results.course))
     else:
-        _show_result(console, catalog, whose, found, history, decisions)
+        _show_result(catalog, whose, found, history, decisions)
     return 0
 
 
@@ -343,15 +313,12 @@ def _progress(
             elif advance is not None:
                 advance(done, total, "graded")
             elif not console.quiet:
-                console.line(_graded(result, done, total))
+                verdict, about = result.verdict, f"{one_line(result.student)} {result.exercise}"
+                scored = f"{verdict.score:g}/{verdict.max_score:g}"
+                ending = scored if verdict.error is None else verdict.error.code
+                console.line(f"{done}/{total} {about} {verdict.state} {ending}")
 
         yield report
-
-
-def _graded(result: Effective, done: int, total: int) -> str:
-    verdict = result.verdict
-    ending = f"{verdict.score:g}/{verdict.max_score:g}" if verdict.error is None else verdict.error.code
-    return f"{done}/{total} {one_line(result.student)} {result.exercise} {verdict.state} {ending}"
 
 
 def _show_summary(
@@ -390,7 +357,7 @@ def _show_summary(
         assign = command("grade", "assign", out)
         console.note(f"{assign} lists the files of those that could not be graded, and how to settle each.")
     _show_people(console, summary)
-    show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
+    opt.show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
     show_unjudged(console, summary.unjudged)
     _show_edited(console, summary, tried, out)
     if summary.already:
@@ -428,9 +395,10 @@ def _alike(rows: Sequence[Ungraded]) -> list[tuple[str, Ungraded]]:
             files.setdefault((row.exercise, row.message), []).append(row)
         else:
             told.append((f"{one_line(row.student)} {row.exercise}", row))
-    for (exercise, _), those in files.items():
-        told.append((f"{exercise}, {counted(len(those), 'submission')}", those[0]))
-    return told
+    whole = (
+        (f"{those[0].exercise}, {counted(len(those), 'submission')}", those[0]) for those in files.values()
+    )
+    return [*told, *whole]
 
 
 def _mark(summary: Summary) -> str:
@@ -454,14 +422,9 @@ def show_unjudged(console: Console, sentences: Sequence[str]) -> None:
 
 
 def _show_result(
-    console: Console,
-    catalog: Catalog,
-    whose: str,
-    found: Effective,
-    history: list[Result],
-    decisions: list[Decision],
+    catalog: Catalog, whose: str, found: Effective, history: list[Result], decisions: list[Decision]
 ) -> None:
-    verdict, result = found.verdict, found.result
+    console, verdict, result = current(), found.verdict, found.result
     passed = "passed" if found.passed else "not passed"
     score = "none" if found.score is None else format_points(found.score)
     console.heading(f"{whose}, {found.exercise}", verdict.state)
@@ -471,7 +434,9 @@ def _show_result(
         words = f"{one_line(found.override.reason)} (set {at}; {checks_gave(found)})"
         console.item("override", words, width=10)
     if found.late is not None:
-        cost = f"{in_points(found.penalty)} off {points(found.raw_score)}" if found.penalty else "no penalty"
+        cost = (
+            f"{in_points(found.penalty)} off {opt.points(found.raw_score)}" if found.penalty else "no penalty"
+        )
         console.item("late", f"{in_days(found.late)}, {cost}", width=10)
     if result.number:
         level = f" at {verdict.isolation}" if verdict.isolation else ""
@@ -480,12 +445,12 @@ def _show_result(
     for older in history:
         if older.number != result.number:
             given = None if older.verdict.state == "grader_error" else older.verdict.score
-            was = f"{points(given)}, {older.verdict.state}"
+            was = f"{opt.points(given)}, {older.verdict.state}"
             console.item("before", f"{older.graded_at}: {was}, grader {older.key.grader_version}", width=10)
     for note in verdict.warnings:
         console.item("note", one_line(note), width=10)
     for decision in decisions:
-        before = in_words(decision.before)
+        before = opt.in_words(decision.before)
         words = f"{decision.at}, {decision.who}: {one_line(decision.reason)}; before: {before}"
         console.item(decision.kind, one_line(words), width=10)
     if verdict.error is not None:
@@ -508,4 +473,4 @@ def checks_gave(found: Effective) -> str:
     """What the graders said of work that has a score by hand."""
     if found.verdict.state in {"ungradable", MISSING, NOT_YET}:
         return "no check ran"
-    return f"the checks gave {points(found.raw_score)}"
+    return f"the checks gave {opt.points(found.raw_score)}"

@@ -1,6 +1,7 @@
 """Which command to suggest next."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from course.catalog.load import Catalog
@@ -17,8 +18,11 @@ def next_step(here: Here, made: Attempt) -> str:
     exercise = made.exercise
     if made.verdict.all_pass:
         return after_warm_up(here, exercise) if exercise.is_warm_up else "course submit"
-    if fingerprint(made.source) == fingerprint(here.stub(exercise)):
-        return _before_writing(here, exercise)
+    if fingerprint(made.source) == fingerprint(here.stub(exercise)):  # before anything is written
+        unread = False
+        with suppress(CourseError):  # a warm-up is done while its lesson is read
+            unread = not exercise.is_warm_up and exercise.lesson not in here.standing().read
+        return f"course lesson {exercise.lesson}" if unread else f"course watch {exercise.id}"
     return f"course {'hint' if hint_is_due(here, exercise) else 'watch'} {exercise.id}"
 
 
@@ -43,10 +47,9 @@ def after_report(here: Here, exercise: Exercise) -> str:
 
 
 def _after(here: Here, done: Exercise) -> str:
-    try:
+    standing = Standing()
+    with suppress(CourseError):  # a record that cannot be read is warned about elsewhere
         standing = here.standing()
-    except CourseError:  # a record that cannot be read is warned about elsewhere
-        standing = Standing()
     return next_in_course(here.catalog, standing, done)
 
 
@@ -164,14 +167,3 @@ def _in_progress(catalog: Catalog, standing: Standing) -> str:
         go_on = f"{exercise.id}: {state}. To go on: {_go_on(standing, exercise)}"
         begun.append((last.at.isoformat() if last else "", go_on))
     return max(begun, key=lambda one: one[0])[1] if begun else ""
-
-
-def _before_writing(here: Here, exercise: Exercise) -> str:
-    """The step before anything is written: the lesson if it was not read, or the file."""
-    if exercise.is_warm_up:  # done while its lesson is read
-        return f"course watch {exercise.id}"
-    try:
-        read = exercise.lesson in here.standing().read
-    except CourseError:
-        read = True
-    return f"course watch {exercise.id}" if read else f"course lesson {exercise.lesson}"

@@ -10,29 +10,18 @@ from course.cli.frame.options import option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import NextStep, filled
 from course.cli.quiz import screen
-from course.cli.quiz.screen import (
-    KEYS,
-    Desk,
-    Quiz,
-    QuizHistoryReply,
-    QuizReview,
-    agrees,
-    open_or_new,
-    printed_seed,
-)
 from course.errors import INTERRUPTED, UsageError
 from course.progress.quiz import Attempt
 from course.quizzing.answers import AnswerFile, read_answers
 from course.quizzing.bank import (
     MarkedQuestion,
     PosedQuestion,
-    Result,
     check_seed,
     mark,
     mark_sentence,
     needed,
 )
-from course.quizzing.desk import Due, answered, finished, fits, reviewed
+from course.quizzing.desk import answered, finished, fits, reviewed
 
 app = group(COMMANDS["quiz"].summary)
 
@@ -64,19 +53,21 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     _check_options(answers, seed, questions, "take")
     if answers is None and not questions:
         _need_terminal(console, "take")
-    desk = Desk.load()
+    desk = screen.Desk.load()
     if answers is not None:
         return _take_file(console, desk, answers, seed)
     if questions:
-        seed = printed_seed(console, desk, seed)
+        # They are the same until they are answered; an attempt with an answer stays open whatever is printed.
+        if seed is None or desk.history.open is None or not desk.history.open.answers:
+            seed = screen.open_or_new(console, desk, seed).seed
         posed = desk.bank.pose(seed)
         screen.show_mark(console, len(posed))
         return screen.hand_out(console, desk.here, posed, seed, "take")
-    attempt = open_or_new(console, desk, seed)
+    attempt = screen.open_or_new(console, desk, seed)
     resumed = bool(attempt.answers)
     posed = desk.bank.pose(attempt.seed)
     screen.show_mark(console, len(posed))
-    console.note(KEYS)
+    console.note(screen.KEYS)
     if resumed:
         console.line(f"Continuing the attempt you left: {len(attempt.answers)} of {len(posed)} answered.")
     if not _ask_all(console, desk, attempt, posed):
@@ -89,10 +80,9 @@ def _check_options(answers: Path | None, seed: int | None, questions: bool, comm
     if seed is not None:
         check_seed(seed)
     if answers is not None and questions:
-        raise UsageError(
-            "--questions prints the questions and --answers answers them; give one of the two.",
-            help=f"First: course quiz {command} --questions. Then: course quiz {command} --answers FILE.",
-        )
+        problem = "--questions prints the questions and --answers answers them; give one of the two."
+        fix = f"First: course quiz {command} --questions. Then: course quiz {command} --answers FILE."
+        raise UsageError(problem, help=fix)
 
 
 def _need_terminal(console: Console, command: str) -> None:
@@ -107,7 +97,7 @@ def _need_terminal(console: Console, command: str) -> None:
     )
 
 
-def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[PosedQuestion]) -> bool:
+def _ask_all(console: Console, desk: screen.Desk, attempt: Attempt, posed: Sequence[PosedQuestion]) -> bool:
     """Ask the unanswered questions; False if the student stops."""
     for number, question in enumerate(posed, start=1):
         if question.question in attempt.answers:
@@ -123,14 +113,14 @@ def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Pos
     return True
 
 
-def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> int:
+def _take_file(console: Console, desk: screen.Desk, path: Path, seed: int | None) -> int:
     file = read_answers(path)
     open_one = desk.history.open
     seed = _seed("take", file, seed, file.seed, open_one.seed if open_one is not None else None)
     posed = desk.bank.pose(seed)
     answers = file.choose(posed, desk.bank, seed)
     screen.show_mark(console, len(posed))
-    attempt = open_one if open_one is not None and agrees(desk.bank, open_one, seed, answers) else None
+    attempt = open_one if open_one is not None and screen.agrees(desk.bank, open_one, seed, answers) else None
     resumed = attempt is not None and bool(attempt.answers)
     attempt = attempt or desk.begin(seed)
     for name, picked in answers.items():
@@ -144,19 +134,20 @@ def _seed(command: str, file: AnswerFile, *seeds: int | None) -> int:
     for seed in seeds:
         if seed is not None:
             return check_seed(seed)
-    raise UsageError(
-        f"{file.path} does not say which questions its answers are for.",
-        help=f"Add the seed that `course quiz {command} --questions` prints, or give --seed N.",
-        code="seed_missing",
-    )
+    problem = f"{file.path} does not say which questions its answers are for."
+    fix = f"Add the seed that `course quiz {command} --questions` prints, or give --seed N."
+    raise UsageError(problem, help=fix, code="seed_missing")
 
 
 def _finish(
-    console: Console, desk: Desk, attempt: Attempt, posed: Sequence[PosedQuestion], *, resumed: bool
+    console: Console, desk: screen.Desk, attempt: Attempt, posed: Sequence[PosedQuestion], *, resumed: bool
 ) -> int:
     result = finished(attempt, posed, desk.here.record)
     due = desk.reviews()
-    step = _step(result, due)
+    missed = (one.posed.read for one in result.marked if not one.right and one.posed.read)
+    step = "course quiz review" if due else "course"
+    if not result.passed:
+        step = f"course lesson {read}" if (read := next(missed, "")) else "course quiz take"
     screen.show_result(console, result)
     if any(one.seed == attempt.seed and one.id != attempt.id for one in desk.history.finished):
         console.line("Questions of this seed were answered before: this attempt does not count.")
@@ -165,7 +156,7 @@ def _finish(
     console.next(step)
     return desk.here.answer(
         filled(
-            Quiz,
+            screen.Quiz,
             result,
             exit_code=0 if result.passed else 1,
             course=desk.here.course,
@@ -182,13 +173,6 @@ def _finish(
     )
 
 
-def _step(result: Result, due: Sequence[Due]) -> str:
-    if result.passed:
-        return "course quiz review" if due else "course"
-    read = next((one.posed.read for one in result.marked if not one.right and one.posed.read), "")
-    return f"course lesson {read}" if read else "course quiz take"
-
-
 @app.command(epilog="Example: course quiz review")
 def review(answers: AnswersOption = None, seed: SeedOption = None, questions: QuestionsOption = False) -> int:
     """Ask missed questions again, in new words and numbers.
@@ -198,7 +182,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     """
     console = current()
     _check_options(answers, seed, questions, "review")
-    desk = Desk.load()
+    desk = screen.Desk.load()
     ids = [entry.question for entry in desk.reviews() if entry.on <= today()]
     if not ids:
         return _end_review(console, desk, None, [])
@@ -210,7 +194,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     posed = desk.bank.pose(seed, only=ids)
     if questions:
         return screen.hand_out(console, desk.here, posed, seed, "review")
-    console.note(KEYS)
+    console.note(screen.KEYS)
     marked: list[MarkedQuestion] = []
     for number, question in enumerate(posed, start=1):
         one = screen.ask(console, question, number, len(posed))
@@ -222,7 +206,9 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     return _end_review(console, desk, seed, marked)
 
 
-def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids: Sequence[str]) -> int:
+def _review_file(
+    console: Console, desk: screen.Desk, path: Path, seed: int | None, ids: Sequence[str]
+) -> int:
     file = read_answers(path)
     seed = _seed("review", file, seed, file.seed)
     posed = desk.bank.pose(seed, only=ids)
@@ -233,7 +219,9 @@ def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids
     return _end_review(console, desk, seed, marked)
 
 
-def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence[MarkedQuestion]) -> int:
+def _end_review(
+    console: Console, desk: screen.Desk, seed: int | None, marked: Sequence[MarkedQuestion]
+) -> int:
     due = desk.reviews()
     missed = [one for one in marked if not one.right]
     if marked:
@@ -251,7 +239,7 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
     step = "course" if best is not None and best.passed else "course quiz take"
     console.next(step)
     return desk.here.answer(
-        QuizReview(
+        screen.QuizReview(
             exit_code=1 if missed else 0,
             course=desk.here.course,
             seed=seed,
@@ -271,7 +259,7 @@ def history(
     ] = False,
 ) -> int:
     """Show every attempt, with dates and scores, and what is under review."""
-    console, desk = current(), Desk.load()
+    console, desk = current(), screen.Desk.load()
     last = desk.history.finished[-1] if whole and desk.history.finished else None
     if last is not None and fits(desk.bank, last):
         with console.paged():
@@ -291,7 +279,7 @@ def history(
     step = "course quiz review" if ready else "course" if passed else "course quiz take"
     console.next(step)
     return desk.here.answer(
-        QuizHistoryReply(
+        screen.QuizHistoryReply(
             course=desk.here.course,
             mark=mark_sentence(len(desk.bank.ids)),
             attempts=attempts,

@@ -13,7 +13,7 @@ from course.catalog.models import CourseRef
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Envelope, NextStep, filled
-from course.cli.home.learning import day
+from course.cli.home.overview import day
 from course.errors import CourseError, UsageError
 from course.progress.quiz import Attempt, QuizHistory, quiz_history
 from course.quizzing.bank import (
@@ -202,24 +202,26 @@ def show_result(console: Console, result: Result) -> None:
 
 def _show_briefly(console: Console, marked: MarkedQuestion, number: int) -> None:
     """One answered question; if it was missed, both answers and why the student's is wrong."""
-    posed, chosen = marked.posed, marked.chosen
-    outcome = ("right", "green") if marked.right else ("missed", "red")
-    console.line((f"{number}. {posed.title}: ", "bold"), outcome)
+    _show_outcome(console, marked, number)
     if not marked.right:
-        answer = _lettered(chosen)
+        answer = _lettered(marked.chosen)
         if console.fancy:  # it was read a moment ago, and a line of it says which it was
             answer = shorten(answer, max(20, console.width - _LABEL - 4), placeholder=" …")
         console.item("Your answer", answer, style="red", width=_LABEL)
-        console.line(chosen.explanation, indent=4)
-        console.item("Right", _lettered(posed.key), style="green", width=_LABEL)
+        console.line(marked.chosen.explanation, indent=4)
+        console.item("Right", _lettered(marked.posed.key), style="green", width=_LABEL)
+
+
+def _show_outcome(console: Console, marked: MarkedQuestion, number: int) -> None:
+    outcome = ("right", "green") if marked.right else ("missed", "red")
+    console.line((f"{number}. {marked.posed.title}: ", "bold"), outcome)
 
 
 def show_marked(console: Console, marked: MarkedQuestion, number: int) -> None:
     """One answered question and why its options are right or wrong."""
     posed, chosen = marked.posed, marked.chosen
     console.blank()
-    outcome = ("right", "green") if marked.right else ("missed", "red")
-    console.line((f"{number}. {posed.title}: ", "bold"), outcome)
+    _show_outcome(console, marked, number)
     if not marked.right:
         _show_prompt(console, posed, indent=2)
         _show_choice(console, "Your answer", chosen, "red")
@@ -294,9 +296,12 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
     step = f"course quiz {command} --answers answers.toml"
     answers = "".join(f'{question.question} = ""\n' for question in posed)
     template = f"format_version = 1\nseed = {seed}\n\n[answers]\n{answers}"
-    for number, question in enumerate(posed, start=1):
+    asked = []
+    for number, one in enumerate(posed, start=1):
         console.blank()
-        _show_question(console, question, number, len(posed))
+        _show_question(console, one, number, len(posed))
+        places = tuple(filled(QuizPlace, choice) for choice in one.choices)
+        asked.append(QuizAsked(one.question, one.title, one.prompt, places))
     console.blank()
     console.heading("Answers", "save this as answers.toml, with a letter in each pair of quotes")
     console.block(template)
@@ -306,7 +311,7 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
             course=here.course,
             seed=seed,
             mark=mark_sentence(len(posed)) if command == "take" else "",
-            questions=tuple(_asked(question) for question in posed),
+            questions=tuple(asked),
             template=template,
             next=NextStep(step),
             warnings=tuple(here.warnings),
@@ -314,34 +319,14 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
     )
 
 
-def _asked(posed: PosedQuestion) -> QuizAsked:
-    places = tuple(filled(QuizPlace, choice) for choice in posed.choices)
-    return QuizAsked(posed.question, posed.title, posed.prompt, places)
-
-
 def question_reply(marked: MarkedQuestion) -> QuizQuestion:
     """An answered question as a script reads it."""
-    posed = marked.posed
-    options = tuple(
-        filled(
-            QuizOption,
-            choice,
-            chosen=choice is marked.chosen,
-            misconception=choice.misconception or None,
-            belief=choice.belief or None,
-        )
-        for choice in posed.choices
-    )
-    return filled(
-        QuizQuestion,
-        marked,
-        posed,
-        id=posed.question,
-        answer=marked.chosen.id,
-        options=options,
-        lesson=posed.lesson or None,
-        read=posed.read or None,
-    )
+    posed, options = marked.posed, []
+    for one in posed.choices:
+        behind = {"misconception": one.misconception or None, "belief": one.belief or None}
+        options.append(filled(QuizOption, one, chosen=one is marked.chosen, **behind))
+    more = {"options": tuple(options), "lesson": posed.lesson or None, "read": posed.read or None}
+    return filled(QuizQuestion, marked, posed, id=posed.question, answer=marked.chosen.id, **more)
 
 
 def due_reply(due: Sequence[Due]) -> tuple[QuizDue, ...]:
@@ -401,11 +386,9 @@ class Desk:
         """
         self._read_again()
         if there := caught_up(attempt, self.history):
-            raise UsageError(
-                f"This attempt was finished in another terminal: {there.score} of {there.total} right.",
-                help="`course quiz history` shows it; `course quiz take` begins another one.",
-                code="attempt_finished",
-            )
+            problem = f"This attempt was finished in another terminal: {there.score} of {there.total} right."
+            fix = "`course quiz history` shows it; `course quiz take` begins another one."
+            raise UsageError(problem, help=fix, code="attempt_finished")
 
     def _read_again(self) -> None:
         try:
@@ -431,17 +414,6 @@ def open_or_new(console: Console, desk: Desk, seed: int | None) -> Attempt:
         left = f"{len(open_one.answers)} of {len(open_one.questions)} answered"
         console.line(f"This is another attempt; the one you left (seed {open_one.seed}, {left}) ends here.")
     return desk.begin(desk.new_seed() if seed is None else seed)
-
-
-def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
-    """Which questions to print: they are the same until they are answered.
-
-    An attempt with at least one answer stays open, whatever is printed.
-    """
-    open_one = desk.history.open
-    if seed is not None and open_one is not None and open_one.answers:
-        return seed
-    return open_or_new(console, desk, seed).seed
 
 
 def agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:

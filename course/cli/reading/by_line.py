@@ -29,6 +29,8 @@ from course.reading.record import JUDGEMENTS, InProgress, Place, find
 
 _ON_WORDS, _STOP = ("", "y", "yes", "n", "next"), ("q", "quit", "no")
 _ON = "Enter goes on"
+#: Commands while a prediction is open; everything else is the prediction.
+_LEADS_ELSEWHERE = re.compile(r"[?bt]|g \d+|/.+|course .+")
 #: After this time a running cell is announced, in s.
 _PATIENCE = 1.0
 _WORDS = (
@@ -73,9 +75,7 @@ class LineReader:
             "r": self._on_cell(self._run),
             "e": self._on_cell(self._edit),
             "u": self._on_cell(self._undo),
-            "start": self._on_task(lambda one: ["warmup" if one.is_warm_up else "start", one.id]),
-            "check": self._on_task(lambda one: ["check", one.id]),
-            "hint": self._on_task(lambda one: ["hint", one.id]),
+            **{word: self._on_task(word) for word in ("start", "check", "hint")},
             "?": self._help,
         }
 
@@ -98,8 +98,7 @@ class LineReader:
 
     def _opened(self, number: int) -> int:
         """The page, or the one with the open prediction that it would answer."""
-        question = self._progress.closed_by(self._starts[number])
-        if question is None:
+        if (question := self._progress.closed_by(self._starts[number])) is None:
             return number
         self._say("Predict first.")
         return bisect.bisect_right(self._starts, question.index) - 1
@@ -178,7 +177,7 @@ class LineReader:
 
     def _predict(self, question: Question, number: int) -> int | None:
         ask = "Your prediction; Enter skips it: "
-        while (typed := self._console.ask(ask)) is not None and _leads_elsewhere(typed):
+        while (typed := self._console.ask(ask)) is not None and _LEADS_ELSEWHERE.fullmatch(typed):
             leads = self._do(typed, number)
             if leads is not None:
                 return leads
@@ -197,12 +196,8 @@ class LineReader:
 
     def _unjudged(self, number: int) -> Question | None:
         """The prediction that is answered on a page and was not judged yet."""
-        for index in range(self._starts[number], self._starts[number + 1]):
-            question = self._script.answered_at(index)
-            said = self._progress.prediction(question) if question is not None else None
-            if said is not None and not said.skipped and said.judged is None:
-                return question
-        return None
+        found = map(self._progress.answered_at, range(self._starts[number], self._starts[number + 1]))
+        return next((question for question, said in filter(None, found) if said.judged is None), None)
 
     def _judge(self, number: int, typed: int) -> None:
         question = self._unjudged(number)
@@ -225,9 +220,8 @@ class LineReader:
             cells = self._cells(number) if not rest else list(self._script.shown_cells)
             cell = next((one for one in cells if not rest or str(one.number) == rest), None)
             if cell is None:
-                self._say(
-                    f"No cell {rest} in this lesson." if rest else "No cell on this page; name its number."
-                )
+                none = f"No cell {rest} in this lesson."
+                self._say(none if rest else "No cell on this page; name its number.")
             elif self._progress.closed_by(cell.index) is not None:
                 self._say("Predict first.")
             else:
@@ -292,10 +286,8 @@ class LineReader:
             except CourseError as error:
                 self._console.error(error.message, error.help)
                 return
-        path = self._files[cell.number]
-        self._say(
-            f"Cell {cell.number} is in {path}: change it there. r {cell.number} runs what the file holds."
-        )
+        where = f"Cell {cell.number} is in {self._files[cell.number]}: change it there."
+        self._say(f"{where} r {cell.number} runs what the file holds.")
 
     def _undo(self, cell: Cell) -> None:
         self._files.pop(cell.number, None)
@@ -308,18 +300,17 @@ class LineReader:
         block = self._pages[number][-1]
         return self._catalog.exercise(block.id) if isinstance(block, b.Task) else None
 
-    def _on_task(self, words: Callable[[Exercise], list[str]]) -> Callable[[str, int], None]:
+    def _on_task(self, command: str) -> Callable[[str, int], None]:
+        """A command for the warm-up or the exercise of a page."""
 
         def do(_: str, number: int) -> None:
             task = self._task(number)
-            if task is None:
-                self._say("No warm-up and no exercise on this page.")
-                return
-            if self._here is None:
-                self._say("Make a workspace first: course init my-course")
+            if task is None or self._here is None:
+                first = "Make a workspace first: course init my-course"
+                self._say("No warm-up and no exercise on this page." if task is None else first)
                 return
             try:
-                again(words(task))
+                again(["warmup" if command == "start" and task.is_warm_up else command, task.id])
             except CourseError as error:
                 self._console.error(error.message, error.help)
 
@@ -357,11 +348,6 @@ class LineReader:
     def _write(self, kind: str, subject: str, data: Mapping[str, object]) -> None:
         if self._here is not None:
             self._here.record(kind, subject, dict(data))
-
-
-def _leads_elsewhere(typed: str) -> bool:
-    """Whether a word is a command while a prediction is open; everything else is the prediction."""
-    return typed in {"?", "b", "t"} or re.fullmatch(r"g \d+|/.+|course .+", typed) is not None
 
 
 def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:

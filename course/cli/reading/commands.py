@@ -1,4 +1,4 @@
-"""``course lessons`` and ``course lesson``: the list of lessons, and reading one."""
+"""``course lessons``, ``lesson`` and ``warmup``: the lists, reading a lesson, doing a small task of one."""
 
 import contextlib
 import io
@@ -17,8 +17,7 @@ from course.cli.frame.here import Here, here_or_outside
 from course.cli.frame.options import LessonName, Verbose, WarmUpName, option
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.advice import after_lesson
-from course.cli.home.learning import day
-from course.cli.home.overview import lesson_states, warm_up_states
+from course.cli.home.overview import day, lesson_states, warm_up_states
 from course.cli.home.replies import LessonState, WarmUpState
 from course.cli.reading.lesson import Printer, printer
 from course.cli.work.changing import put
@@ -180,9 +179,8 @@ def _section(script: Script, slug: str) -> Section:
     found = next((section for section in script.sections if section.slug == slug), None)
     if found is None:
         known = ", ".join(section.slug for section in script.sections if section.level == 2)
-        raise NotFoundError(
-            f"{script.lesson.id} has no section {slug!r}.", help=f"It has: {known}.", code="section_not_found"
-        )
+        problem = f"{script.lesson.id} has no section {slug!r}."
+        raise NotFoundError(problem, help=f"It has: {known}.", code="section_not_found")
     return found
 
 
@@ -210,11 +208,8 @@ def _say_unkept(console: Console, here: Here | None) -> None:
 def _print_code(console: Console, script: Script, number: int) -> int:
     cells = script.shown_cells
     if number > len(cells):
-        raise NotFoundError(
-            f"{script.lesson.id} has {counted(len(cells), 'cell')}.",
-            help="Name one of them.",
-            code="cell_not_found",
-        )
+        problem = f"{script.lesson.id} has {counted(len(cells), 'cell')}."
+        raise NotFoundError(problem, help="Name one of them.", code="cell_not_found")
     source = cells[number - 1].source
     console.raw(f"{source}\n")
     return console.answer(_reply(script.lesson, source))
@@ -279,17 +274,13 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
     try:
         chosen = catalog.warm_up_called(name.rstrip("/\\"))
     except NotFoundError as error:
-        raise NotFoundError(
-            f"There is no warm-up called {name!r}.",
-            help=error.help.replace("course exercises", "course warmup"),
-            code=error.code,
-        ) from None
+        problem = f"There is no warm-up called {name!r}."
+        fix = error.help.replace("course exercises", "course warmup")
+        raise NotFoundError(problem, help=fix, code=error.code) from None
     if not chosen.is_warm_up:
-        raise NotFoundError(
-            f"{chosen.id} is an exercise, not a warm-up.",
-            help=f"`course start {chosen.id}` puts it into the workspace.",
-            code="not_a_warm_up",
-        )
+        problem = f"{chosen.id} is an exercise, not a warm-up."
+        fix = f"`course start {chosen.id}` puts it into the workspace."
+        raise NotFoundError(problem, help=fix, code="not_a_warm_up")
     return chosen
 
 
@@ -328,10 +319,8 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
         show_text(console, here, chosen)
     files = put(console, here, chosen)
     step = f"course check {chosen.id}"
-    console.note(
-        f"Write in {chosen.place}/{chosen.module} with your own editor, "
-        f"about {counted(chosen.minutes, 'minute')}."
-    )
+    about = f"about {counted(chosen.minutes, 'minute')}"
+    console.note(f"Write in {chosen.place}/{chosen.module} with your own editor, {about}.")
     console.note(f"Check it:          {step}")
     console.note(f"On every save:     course watch {chosen.id}")
     console.note(f"Still failing:     course hint {chosen.id}")

@@ -16,14 +16,6 @@ from course.cli.frame.options import argument, choice_of, option, scene_ids, sce
 from course.cli.frame.registry import COMMANDS, OPTIONS
 from course.cli.frame.replies import filled
 from course.cli.sandbox import play as playing
-from course.cli.sandbox.play import (
-    SandboxEntry,
-    SandboxExport,
-    SandboxList,
-    SandboxParameter,
-    SandboxReplay,
-    SandboxVersion,
-)
 from course.errors import NotFoundError, UsageError
 from course.printable import counted
 from course.sandbox.exports.formats import START, mjcf, sdf, start_script
@@ -42,19 +34,13 @@ class _Scenes(TyperGroup):
         if self.get_command(ctx, name) is None and (name.isdecimal() or name in known_scenes()):
             args = ["play", *args]
         elif self.get_command(ctx, name) is None:
-            _suggest(name, list(self.commands))
+            # Say which scene was meant, unless a command is as close; either way it is no command, exit 2.
+            close = difflib.get_close_matches(name, [*self.commands, *known_scenes()], n=1)
+            if close and close[0] not in self.commands:
+                problem = f"There is no scene {name!r}."
+                fix = f"Did you mean: course sandbox play {close[0]}?"
+                raise UsageError(problem, help=fix, code="scene_not_found")
         return super().resolve_command(ctx, args)
-
-
-def _suggest(name: str, commands: list[str]) -> None:
-    """Say which scene was meant, unless a command is as close; either way it is no command, exit 2."""
-    close = difflib.get_close_matches(name, [*commands, *known_scenes()], n=1)
-    if close and close[0] not in commands:
-        raise UsageError(
-            f"There is no scene {name!r}.",
-            help=f"Did you mean: course sandbox play {close[0]}?",
-            code="scene_not_found",
-        )
 
 
 app = typer.Typer(cls=_Scenes, help=COMMANDS["sandbox"].summary, invoke_without_command=True, **OPTIONS)
@@ -79,7 +65,7 @@ def menu(
         return None
     console = current()
     if web or (console.interactive and console.fancy):
-        playing.open_view(console, None, web=web, port=port, browser=not no_browser)
+        playing.open_view(None, web=web, port=port, browser=not no_browser)
     else:
         _list(console, None)
     return 0
@@ -134,32 +120,28 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
 
     Exit code 1 if it does.
     """
-    console = current()
-    recorded = recording.read(named(file))
+    console, recorded = current(), recording.read(named(file))
     with console.working("Replaying"):
         difference = recording.replay(recorded)
-    for name, (then, here) in difference.versions.items():
-        console.line(f"Recorded with {name} {then}; here it is {here}.")
+    versions = tuple(
+        playing.SandboxVersion(name=name, recorded=then, here=here)
+        for name, (then, here) in difference.versions.items()
+    )
+    for one in versions:
+        console.line(f"Recorded with {one.name} {one.recorded}; here it is {one.here}.")
     if difference.same:
         states = counted(difference.checked, "state")
         console.line(f"The same, bit by bit: {counted(recorded.ticks, 'step')}, {states} compared.")
     else:
-        console.line(
-            f"It differs at step {difference.tick} (t = {difference.t:.3f} s); "
-            f"up to step {difference.good_until} it was the same."
-        )
-        if not difference.versions:
+        at = f"step {difference.tick} (t = {difference.t:.3f} s)"
+        console.line(f"It differs at {at}; up to step {difference.good_until} it was the same.")
+        if not versions:
             console.note("All versions are the same: the file was changed, or this is a fault of the course.")
-    versions = tuple(
-        SandboxVersion(name=name, recorded=then, here=here)
-        for name, (then, here) in difference.versions.items()
-    )
-    code = 0 if difference.same else 1
     return console.answer(
         filled(
-            SandboxReplay,
+            playing.SandboxReplay,
             difference,
-            exit_code=code,
+            exit_code=0 if difference.same else 1,
             scene=recorded.head.scene.id,
             steps=recorded.ticks,
             first_difference=difference.tick,
@@ -188,14 +170,12 @@ def export(
     target = target_file(output, "-o", endings) if output else None
     chosen = playing.chosen(scene, settings or ())
     data = writers[format_](chosen)
-    written = None
-    if target is None:
-        if not console.json:
-            console.raw(data.decode())
-    else:
-        written = playing.write(target, data, format_)
-    beside = None
+    written = beside = None
     start = start_script(data) if format_ == "sdf" else None
+    if target is not None:
+        written = playing.write(target, data, format_)
+    elif not console.json:
+        console.raw(data.decode())
     if start is not None and target is None:
         console.warn(f"Its velocities at the start need a file beside it: with -o FILE, {START} comes along.")
     elif start is not None and target is not None:
@@ -204,7 +184,7 @@ def export(
         console.note(f"Run it: GZ_SIM_SYSTEM_PLUGIN_PATH={folder} gz sim {shlex.quote(str(target))}")
     text = "" if written else data.decode()
     return console.answer(
-        SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text)
+        playing.SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text)
     )
 
 
@@ -216,7 +196,7 @@ def _list(console: Console, name: str | None) -> None:
     for place, scene in enumerate(found, 1):
         _describe(console, scene, place, one.path if one else None)
     console.note((f"Next: course sandbox play {name or found[0].id}", "bold"))
-    console.emit(SandboxList(scenes=tuple(_entry(scene) for scene in found)))
+    console.emit(playing.SandboxList(scenes=tuple(_entry(scene) for scene in found)))
 
 
 def _describe(console: Console, scene: Scene, place: int, path: Path | None) -> None:
@@ -237,7 +217,7 @@ def _describe(console: Console, scene: Scene, place: int, path: Path | None) -> 
     console.item("file", str(path), width=5)
 
 
-def _entry(scene: Scene) -> SandboxEntry:
+def _entry(scene: Scene) -> playing.SandboxEntry:
     wheels = next((body.wheels for body in scene.body if body.wheels), None)
     own = {
         "gravity": math.hypot(*scene.gravity),
@@ -248,12 +228,9 @@ def _entry(scene: Scene) -> SandboxEntry:
         "left": wheels.left if wheels else None,
         "right": wheels.right if wheels else None,
     }
-    parameters = [filled(SandboxParameter, one) for one in scene.parameter]
-    parameters += [filled(SandboxParameter, one, default=own.get(one.name)) for one in settings_of(scene)]
-    return filled(
-        SandboxEntry,
-        scene,
-        question=question(unchanged(scene)),
-        note=" ".join(scene.note.split()),
-        parameters=tuple(parameters),
-    )
+    parameters = [filled(playing.SandboxParameter, one) for one in scene.parameter]
+    parameters += [
+        filled(playing.SandboxParameter, one, default=own.get(one.name)) for one in settings_of(scene)
+    ]
+    asked, note = question(unchanged(scene)), " ".join(scene.note.split())
+    return filled(playing.SandboxEntry, scene, question=asked, note=note, parameters=tuple(parameters))

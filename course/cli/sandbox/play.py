@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 
 from course.cli.frame import here
-from course.cli.frame.console import Console
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd, named, target
 from course.cli.frame.replies import Backup, Envelope, filled
 from course.errors import CourseError, UsageError
@@ -162,11 +162,8 @@ def pairs(settings: Sequence[str]) -> dict[str, object]:
         try:
             number = float(value)
         except ValueError:
-            raise UsageError(
-                f"--set {pair}: {value[:40]!r} is not a number.",
-                help=f"For example --set {key}=1.",
-                code="bad_parameter",
-            ) from None
+            problem = f"--set {pair}: {value[:40]!r} is not a number."
+            raise UsageError(problem, help=f"For example --set {key}=1.", code="bad_parameter") from None
         found[key.strip()] = int(number) if key == "seed" and number.is_integer() else number
     return found
 
@@ -248,19 +245,22 @@ def play(console: Console, options: PlayOptions) -> int:
     picked = chosen(options.scene, tuple(options.settings or ()))
     end = picked.scene.duration if options.duration is None else options.duration
     if options.at is not None and options.at > end:
-        raise UsageError(
-            f"--at {options.at:g}: the run ends at {end:g} s.",
-            help=f"Take a time up to {end:g}, or a longer --duration.",
-            code="bad_parameter",
-        )
-    given = _given_guess(picked, options)
+        problem = f"--at {options.at:g}: the run ends at {end:g} s."
+        fix = f"Take a time up to {end:g}, or a longer --duration."
+        raise UsageError(problem, help=fix, code="bad_parameter")
+    given = None
+    if options.guess is not None:  # with comma or point, with its unit or without
+        asked = picked.scene.prediction
+        if (given := guess_of(options.guess, asked.unit if asked is not None else "")) is None:
+            said = f"--guess {options.guess} is not a number, or one too large."
+            raise UsageError(said, help=GUESS_LIKE, code="bad_parameter")
     if lines := unwritten(picked.path):
         left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"
         console.note(f"{picked.path}:{lines[0]}: this line {left} still to be written.")
     if not options.web and (options.unseen or not console.interactive or not console.fancy):
         return _run_unseen(console, picked, options, targets, _guess(console, picked, given))
     browser = not options.no_browser
-    recorded = open_view(console, picked, web=options.web, port=options.port, browser=browser, guess=given)
+    recorded = open_view(picked, web=options.web, port=options.port, browser=browser, guess=given)
     if "record" in targets:
         write(targets["record"], recorded, "record")
     console.note(("After playing: ", "bold"), picked.scene.after)
@@ -280,18 +280,6 @@ def _check(options: PlayOptions) -> None:
         raise UsageError("--every says how far apart the samples of --csv are.", help="Add --csv FILE.")
     if options.port and not options.web:
         raise UsageError("--port says where the page of --web is.", help="Add --web.")
-
-
-def _given_guess(chosen: Chosen, options: PlayOptions) -> float | None:
-    """The guess of the command line, with comma or point, with its unit or without."""
-    if options.guess is None:
-        return None
-    asked = chosen.scene.prediction
-    guess = guess_of(options.guess, asked.unit if asked is not None else "")
-    if guess is None:
-        said = f"--guess {options.guess} is not a number, or one too large."
-        raise UsageError(said, help=GUESS_LIKE, code="bad_parameter")
-    return guess
 
 
 def _guess(console: Console, chosen: Chosen, given: float | None) -> float | None:
@@ -316,13 +304,7 @@ def _guess(console: Console, chosen: Chosen, given: float | None) -> float | Non
 
 
 def open_view(
-    console: Console,
-    chosen: Chosen | None,
-    *,
-    web: bool,
-    port: int,
-    browser: bool,
-    guess: float | None = None,
+    chosen: Chosen | None, *, web: bool, port: int, browser: bool, guess: float | None = None
 ) -> bytes:
     """Play a scene, or all of them, until the user leaves; the recording of what was played last.
 
@@ -333,11 +315,16 @@ def open_view(
     play_in = _view("web" if web else "terminal")
 
     def say(text: str) -> None:
-        console.line(text)
-        console.flush()  # even into a file or a pipe: the page is served until somebody ends it
+        current().line(text)
+        current().flush()  # even into a file or a pipe: the page is served until somebody ends it
 
     more: dict[str, Any] = {"port": port, "open_browser": browser, "say": say} if web else {}
     return play_in(chosen, _desk(), guess=guess, **more)
+
+
+def _view(name: str) -> Callable[..., bytes]:
+    play_in: Callable[..., bytes] = importlib.import_module(f"course.sandbox.views.{name}.view").play
+    return play_in
 
 
 def _desk() -> Desk:
@@ -345,9 +332,8 @@ def _desk() -> Desk:
     played: set[str] = set()
     with contextlib.suppress(CourseError):  # playing needs no workspace
         store = Here.load().workspace.store
-        played = {
-            event.subject for kind in ("sandbox-guess", "sandbox-played") for event in store.events(kind)
-        }
+        events = (*store.events("sandbox-guess"), *store.events("sandbox-played"))
+        played = {event.subject for event in events}
 
     def opened(scene: str) -> None:
         if scene not in played and scene in scene_ids():
@@ -360,11 +346,6 @@ def _desk() -> Desk:
         return str(here.write(path, data, why="sandbox").path)
 
     return Desk(keep=_keep, save=save, played=set(played), opened=opened)
-
-
-def _view(name: str) -> Callable[..., bytes]:
-    play_in: Callable[..., bytes] = importlib.import_module(f"course.sandbox.views.{name}.view").play
-    return play_in
 
 
 # -- unseen ----------------------------------------------------------------------------------------------
@@ -449,11 +430,13 @@ def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], op
         for sentence in told:
             console.line(sentence)
         for probe in chosen.scene.probe:
-            value = done.probes[probe.name]
-            unit = f" {probe.unit}" if probe.unit else ""
-            console.line(f"{probe.name}: {'did not happen' if math.isnan(value) else f'{value:.6g}{unit}'}")
+            console.line(f"{probe.name}: {_happened(done.probes[probe.name], probe.unit)}")
     _show_comparison(console, done.comparison)
     console.note(("Think: ", "bold"), chosen.scene.after)
+
+
+def _happened(value: float, unit: str) -> str:
+    return "did not happen" if math.isnan(value) else f"{value:.6g} {unit}".rstrip()
 
 
 def _show_comparison(console: Console, comparison: Comparison | None) -> None:
@@ -464,10 +447,8 @@ def _show_comparison(console: Console, comparison: Comparison | None) -> None:
         rows = [("theory", comparison.theory), ("simulation", comparison.simulation)]
         if comparison.guess is not None:
             rows.insert(0, ("your guess", comparison.guess))
-        unit = "" if comparison.unit == "1" else f" {comparison.unit}"
         for name, value in rows:
-            shown = "did not happen" if math.isnan(value) else f"{value:.6g}{unit}"
-            console.item(name, shown, width=10)
+            console.item(name, _happened(value, "" if comparison.unit == "1" else comparison.unit), width=10)
     console.line((comparison.verdict, "bold"))
     console.note(comparison.why)
 
@@ -480,14 +461,7 @@ def _keep(chosen: Chosen, comparison: Comparison | None) -> None:
         store = Here.load().workspace.store
     except CourseError:
         return  # playing needs no workspace
-    store.append(
-        "sandbox-guess",
-        chosen.scene.id,
-        {
-            "guess": comparison.guess,
-            "theory": comparison.theory,
-            "simulation": comparison.simulation if math.isfinite(comparison.simulation) else None,
-            "right": bool(comparison.guess_right),
-            "settings": {**chosen.parameters, **chosen.settings},
-        },
-    )
+    simulation = comparison.simulation if math.isfinite(comparison.simulation) else None
+    data: dict[str, Any] = {"guess": comparison.guess, "theory": comparison.theory, "simulation": simulation}
+    data |= {"right": bool(comparison.guess_right), "settings": {**chosen.parameters, **chosen.settings}}
+    store.append("sandbox-guess", chosen.scene.id, data)

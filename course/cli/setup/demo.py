@@ -97,7 +97,13 @@ def demo() -> int:
     )
     with attempts.open_session(example, catalog) as session:
         before = _motion(console, session, _checked(console, session, mistaken), passes=False)
-        _show_mistake(console, example, mistaken, before.verdict)
+        with console.paged():
+            console.heading("1. This function calls itself explicit Euler. Each of its steps:")
+            # The body of the function's loop up to where it keeps the step: the method itself.
+            body = mistaken.partition("for _ in range(n):\n")[2].partition("        xs.append")[0]
+            console.block(textwrap.dedent(body).rstrip(), "python", indent=2)
+            console.blank()
+            show_verdict(console, example, before.verdict, whole=False, brief=True)
         if console.converses:
             fixed = _ask(console, session, mistaken, right)
         else:
@@ -149,14 +155,6 @@ def _motion(console: Console, session: GradingSession, made: Attempt, *, passes:
     return _Motion(made.verdict, np.array(x), np.array(v))
 
 
-def _show_mistake(console: Console, example: Exercise, mistaken: str, verdict: Verdict) -> None:
-    with console.paged():
-        console.heading("1. This function calls itself explicit Euler. Each of its steps:")
-        console.block(_loop(mistaken), "python", indent=2)
-        console.blank()
-        show_verdict(console, example, verdict, whole=False, brief=True)
-
-
 def _ask(console: Console, session: GradingSession, mistaken: str, right: str) -> Attempt | None:
     """The module as the user fixes it, or ``right`` if they do not; None if they leave.
 
@@ -166,7 +164,8 @@ def _ask(console: Console, session: GradingSession, mistaken: str, right: str) -
     indent = wrong[: len(wrong) - len(wrong.lstrip())]
     console.blank()
     console.line(("Your turn. ", "bold"), f"This line is wrong: {wrong.strip()}")
-    question, tries = "Type it as it should be (Enter shows the answer, q leaves): ", 0
+    again = "Type it as it should be (Enter shows the answer, q leaves): "
+    question, tries = again, 0
     while True:
         typed = console.ask(question)
         if typed is None or typed.lower() in {"q", "quit"}:
@@ -174,9 +173,7 @@ def _ask(console: Console, session: GradingSession, mistaken: str, right: str) -
         if not typed:
             return _checked(console, session, right)
         if typed.split() == wrong.split():
-            question = (
-                "That is the line as it was. Type it as it should be (Enter shows the answer, q leaves): "
-            )
+            question = f"That is the line as it was. {again}"
             continue
         made = _checked(console, session, mistaken.replace(wrong, indent + typed))
         if made.verdict.all_pass:
@@ -215,7 +212,13 @@ def _show_fixed(
     console.blank()
     console.heading("3. What the mistake hid")
     _draw(console, before, after)
-    console.line(_said(before, after))
+    low, high = before.energy
+    console.line(
+        f"Explicit Euler gains energy: over {STEP * STEPS:g} s of this spring, the fixed function's energy "
+        f"grows to {after.energy[1]:.2f} times its initial value. With the mistake it stays between "
+        f"{low:.2f} and {high:.2f} times that value, because it turned the steps into those of "
+        "another method. Explicit Euler would have looked better than it is."
+    )
 
 
 def _say_next(console: Console) -> None:
@@ -238,29 +241,12 @@ def worked_example(catalog: Catalog) -> Exercise:
     )
 
 
-def _loop(source: str) -> str:
-    """The body of the function's loop up to where it keeps the step: the method itself."""
-    body = source.partition("for _ in range(n):\n")[2].partition("        xs.append")[0]
-    return textwrap.dedent(body).rstrip()
-
-
 def _change(before: str, after: str) -> tuple[str, ...]:
     """The lines that differ, as a diff without its head, indented as little as possible."""
     lines = difflib.ndiff(before.splitlines(), after.splitlines())
     changed = [line for line in lines if line[:2] in {"- ", "+ "}]
     margin = min(len(line) - 2 - len(line[2:].lstrip()) for line in changed)
     return tuple(line[:2] + line[2 + margin :] for line in changed)
-
-
-def _said(before: _Motion, after: _Motion) -> str:
-    """The picture in words, with its numbers."""
-    low, high = before.energy
-    return (
-        f"Explicit Euler gains energy: over {STEP * STEPS:g} s of this spring, the fixed function's energy "
-        f"grows to {after.energy[1]:.2f} times its initial value. With the mistake it stays between "
-        f"{low:.2f} and {high:.2f} times that value, because it turned the steps into those of "
-        "another method. Explicit Euler would have looked better than it is."
-    )
 
 
 def _draw(console: Console, before: _Motion, after: _Motion) -> None:

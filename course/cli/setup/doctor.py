@@ -91,8 +91,7 @@ def doctor(
     It also says what is missing, with the command that installs it. Exit code 4 if the course cannot work
     without a missing part.
     """
-    console = current()
-    catalog = load_catalog()
+    console, catalog = current(), load_catalog()
     found = tuple(packages())
     fixes = _missing(found)
     workspace, repaired, trouble = _workspace(repair=repair)
@@ -102,29 +101,24 @@ def doctor(
     complete = not any(item.group == "" and not item.ok for item in found) and not trouble
     _fact("Course", f"{catalog.title} {catalog.version}, installed as a {kind}")
     _fact("Python", f"{platform.python_version()} at {sys.executable}, {platform.platform()}")
-    _fact("Packages", _in_words(found))
+    there = [one for one in found if one.ok or not one.group]  # with what is missing of the base
+    needs = ["" if one.ok else f" (needs {one.requirement})" for one in there]
+    named = (f"{one.name} {one.installed or 'MISSING'}{more}" for one, more in zip(there, needs, strict=True))
+    _fact("Packages", ", ".join(named))
     _fact("Protection", f"{level}: {_LEVELS[level]}" if level in _LEVELS else level)
     for sentence in (*causes, *advice):
         console.line(sentence, indent=2)
     _fact("Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()))
     _fact("Workspace", workspace or "none here")
-    for line in (repaired, trouble):
-        if line:
-            console.line(line)
-    unserved = tuple(
-        f"Optional ({one.group}): {one.unserved}."
-        for one in requirements()
-        if one.unserved and one.group not in _NOT_FOR_USERS
-    )
-    for sentence in unserved:
-        console.line(sentence)
-    for fix in fixes:
-        console.line(f"{fix.problem} Install it with: {fix.command}")
+    others = [one for one in requirements() if one.unserved and one.group not in _NOT_FOR_USERS]
+    unserved = tuple(f"Optional ({one.group}): {one.unserved}." for one in others)
+    install = (f"{fix.problem} Install it with: {fix.command}" for fix in fixes)
+    for line in filter(None, (repaired, trouble, *unserved, *install)):
+        console.line(line)
     console.line(("Everything the course needs is here." if complete else "Something is missing.", "bold"))
-    code = 0 if complete else MissingCapabilityError.exit_code
     return console.answer(
         Doctor(
-            exit_code=code,
+            exit_code=0 if complete else MissingCapabilityError.exit_code,
             course=catalog.ref,
             python=platform.python_version(),
             platform=platform.platform(),
@@ -148,6 +142,9 @@ def _fact(label: str, words: str) -> None:
 
 def packages() -> Iterable[Package]:
     """Every requirement of the course that this machine could have, and what is installed for it."""
+    from packaging.specifiers import SpecifierSet
+    from packaging.version import InvalidVersion
+
     for one in requirements():
         if one.group in _NOT_FOR_USERS or not one.applies:
             continue
@@ -155,19 +152,10 @@ def packages() -> Iterable[Package]:
             installed = importlib.metadata.version(one.name)
         except importlib.metadata.PackageNotFoundError:
             installed = None
-        ok = installed is not None and _satisfies(installed, one.versions)
+        ok = installed is not None
+        with contextlib.suppress(InvalidVersion):  # a text that is not a version counts as in the range
+            ok = ok and SpecifierSet(one.versions).contains(str(installed), prereleases=True)
         yield filled(Package, one, requirement=one.text, installed=installed, ok=ok)
-
-
-def _satisfies(installed: str, wanted: str) -> bool:
-    """Whether the version is in the range; a text that is not a version counts as in it."""
-    from packaging.specifiers import SpecifierSet
-    from packaging.version import InvalidVersion
-
-    try:
-        return SpecifierSet(wanted).contains(installed, prereleases=True)
-    except InvalidVersion:
-        return True
 
 
 def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
@@ -180,13 +168,9 @@ def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
     for group, items in groups.items():
         names = ", ".join(item.name for item in items)
         verb = "are" if len(items) > 1 else "is"
-        what = (
-            f"{names} {verb} missing or too old."
-            if not group
-            else f"Optional ({group}): {names} {verb} missing."
-        )
-        command = "pip install " + " ".join(f"'{item.requirement}'" for item in items)
-        fixes.append(Fix(problem=what, command=command))
+        missing = f"{names} {verb} missing"
+        what = f"Optional ({group}): {missing}." if group else f"{missing} or too old."
+        fixes.append(Fix(what, "pip install " + " ".join(f"'{item.requirement}'" for item in items)))
     return tuple(fixes)
 
 
@@ -213,12 +197,10 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
         root, store = str(here.workspace.root), here.workspace.store
         if repair:
             result = store.repair()
-            repaired = (
-                "The record of progress is sound; nothing was repaired."
-                if result is None
-                else f"The damaged record is kept at {here.workspace.shown(result.kept)}; "
-                f"{counted(result.carried, 'event')} moved to a new one."
-            )
+            repaired = "The record of progress is sound; nothing was repaired."
+            if result is not None:
+                carried = f"{counted(result.carried, 'event')} moved to a new one"
+                repaired = f"The damaged record is kept at {here.workspace.shown(result.kept)}; {carried}."
         store.events()
     except CourseError as error:
         return root, repaired, f"{error.message} {error.help}"
@@ -228,22 +210,12 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
 
 
 def terminal(console: Console) -> dict[str, str]:
-    encoding = getattr(sys.stdout, "encoding", None) or "unknown"
     return {
         "output": "to a terminal" if sys.stdout.isatty() else "to a file or a pipe",
         "columns": str(console.terminal_width),
         "colour": "on" if console.fancy and not os.environ.get("NO_COLOR") else "off",
-        "encoding": encoding,
+        "encoding": getattr(sys.stdout, "encoding", None) or "unknown",
     }
-
-
-def _in_words(found: Iterable[Package]) -> str:
-    """What is installed, and what is missing of the base."""
-    return ", ".join(
-        f"{item.name} {item.installed or 'MISSING'}" + ("" if item.ok else f" (needs {item.requirement})")
-        for item in found
-        if item.ok or not item.group
-    )
 
 
 # ---
@@ -269,9 +241,8 @@ def bug(
     crash = _last_crash()
     text = redacted("\n".join(_report(crash)))
     written = here.write_told(target, text.encode("utf-8", "backslashreplace"), why="bug")
-    console.line(
-        "It contains a traceback." if crash else "No crash of the course was found: it has no traceback."
-    )
+    none = "No crash of the course was found: it has no traceback."
+    console.line("It contains a traceback." if crash else none)
     console.note("Read it before you pass it on: error messages can quote your own files.")
     return console.answer(Bug(file=written, traceback=crash is not None))
 
@@ -290,17 +261,11 @@ def redacted(text: str) -> str:
 
 def _spellings(text: str) -> set[str]:
     """A name's spellings: unchanged; with decomposed accents, as on macOS; and in Python, JSON and a URL."""
-    forms = {unicodedata.normalize(form, text) for form in ("NFC", "NFD")}
-    return {
-        way
-        for form in forms
-        for way in (
-            form,
-            form.encode("unicode_escape").decode("ascii"),
-            json.dumps(form)[1:-1],
-            quote(form, errors="surrogateescape"),
-        )
-    }
+    found = {unicodedata.normalize("NFC", text), unicodedata.normalize("NFD", text)}
+    for form in tuple(found):
+        found |= {form.encode("unicode_escape").decode("ascii"), json.dumps(form)[1:-1]}
+        found.add(quote(form, errors="surrogateescape"))
+    return found
 
 
 def _places() -> list[tuple[str, str]]:
@@ -359,13 +324,11 @@ def _last_crash() -> str | None:
     mark = f"{INSTALLATION}{Path(__file__).resolve().parents[2]}\n"
     found = []
     for path in Path(tempfile.gettempdir()).glob("course-crash-*.txt"):
-        try:
+        with contextlib.suppress(OSError):
             facts = path.lstat()
-        except OSError:
-            continue
-        mine = not hasattr(os, "getuid") or facts.st_uid == os.getuid()
-        if mine and path.is_file() and not path.is_symlink():
-            found.append((facts.st_mtime, path))
+            mine = not hasattr(os, "getuid") or facts.st_uid == os.getuid()
+            if mine and path.is_file() and not path.is_symlink():
+                found.append((facts.st_mtime, path))
     for when, path in sorted(found, reverse=True):
         with contextlib.suppress(OSError):
             text = path.read_text(encoding="utf-8", errors="backslashreplace")

@@ -72,11 +72,9 @@ def usable(requirement: str | None) -> str | None:
     if requirement is not None and (
         not requirement.isprintable() or requirement.startswith("-") or "${{" in requirement
     ):
-        raise UsageError(
-            f"--requirement {requirement[:80]!r}: this is nothing that pip could install.",
-            help="Give what you would write after `pip install`: an address, a path or a name.",
-            code="bad_requirement",
-        )
+        problem = f"--requirement {requirement[:80]!r}: this is nothing that pip could install."
+        fix = "Give what you would write after `pip install`: an address, a path or a name."
+        raise UsageError(problem, help=fix, code="bad_requirement")
     return requirement
 
 
@@ -93,9 +91,8 @@ def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | No
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise UsageError(
-                f"The folder {path.parent} cannot be made ({error.strerror or error}).", code="not_writable"
-            ) from error
+            problem = f"The folder {path.parent} cannot be made ({error.strerror or error})."
+            raise UsageError(problem, code="not_writable") from error
         written.append(here.write_told(path, text(requirement).encode("utf-8"), why="init"))
     return written
 
@@ -105,10 +102,8 @@ def chosen_kinds(text: str) -> tuple[str, ...]:
     kinds = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
     unknown = [kind for kind in kinds if kind not in KINDS]
     if unknown or not kinds:
-        raise UsageError(
-            f"--with {text[:80]}: there is no {' or '.join(unknown) or 'such word'}.",
-            help=f"Known: {', '.join(KINDS)}; several are joined by commas.",
-        )
+        problem = f"--with {text[:80]}: there is no {' or '.join(unknown) or 'such word'}."
+        raise UsageError(problem, help=f"Known: {', '.join(KINDS)}; several are joined by commas.")
     return kinds
 
 
@@ -237,37 +232,24 @@ def _refuse_odd_places(root: Path, catalog: Catalog) -> None:
     """A workspace inside another one, or in the course's own folder, would mix up two people's files."""
     content = catalog.content
     if root in (content.root, content.exercises, content.lessons) or content.exercises in root.parents:
-        raise UsageError(
-            f"{root} is where the course itself lies.",
-            help="Name a folder of your own: `course init my-course`.",
-            code="inside_course",
-        )
+        problem = f"{root} is where the course itself lies."
+        fix = "Name a folder of your own: `course init my-course`."
+        raise UsageError(problem, help=fix, code="inside_course")
     if root.exists() and not root.is_dir():
         raise UsageError(f"{root} is a file.", help="Name a folder.", code="exists")
-    outer = _enclosing(root)
-    if outer is not None:
-        raise UsageError(
-            f"{root} lies inside the workspace {outer.root}.",
-            help="Use that one, or make yours somewhere else.",
-            code="nested_workspace",
-        )
-
-
-def _enclosing(root: Path) -> Workspace | None:
     try:
-        return Workspace.find(root.parent)
+        outer = Workspace.find(root.parent)
     except NotFoundError:
-        return None
+        return
     except CourseError as error:
         raise UsageError(error.message, help=error.help, code="nested_workspace") from error
+    problem = f"{root} lies inside the workspace {outer.root}."
+    raise UsageError(problem, help="Use that one, or make yours somewhere else.", code="nested_workspace")
 
 
 def _quoted(root: Path, here: Path) -> str:
     """A path for a shell: relative where that is shorter, quoted where it must be."""
-    try:
-        text = str(root.relative_to(here))
-    except ValueError:
-        text = str(root)
+    text = str(root.relative_to(here) if root.is_relative_to(here) else root)
     text = f"./{text}" if text.startswith("-") else text
     if os.name == "nt":  # whose shells know no other quotes, and no such character in a name
         return f'"{text}"' if any(char.isspace() for char in text) else text

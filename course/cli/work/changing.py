@@ -1,15 +1,13 @@
-"""``course diff``, ``course reset`` and ``course update``: the stub, and newer versions of it.
+"""``course start``, ``diff``, ``reset`` and ``update``: the stub, and newer versions of it.
 
 Every replaced file is copied to ``.course/backups`` first, and the copy's path is printed.
 """
-
-from __future__ import annotations
 
 import contextlib
 import difflib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console, current
@@ -24,9 +22,6 @@ from course.handed_in.cells import read_notebook
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.printable import counted
 from course.progress.workspace import same_text, write_atomically
-
-if TYPE_CHECKING:  # what generates notebooks needs NumPy
-    from course.notebooks.build import Generated
 
 
 def diff(exercise: ExerciseName = None) -> int:
@@ -75,11 +70,8 @@ def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not
     step = f"course check {chosen.id}"
     there = path.is_file()
     if not there and chosen.id not in here.workspace.started() and here.known_history(chosen).last is None:
-        raise NotFoundError(
-            f"You have not started {chosen.id}: there is nothing to reset.",
-            help=f"Start it: `course start {chosen.id}`.",
-            code="not_started",
-        )
+        problem = f"You have not started {chosen.id}: there is nothing to reset."
+        raise NotFoundError(problem, help=f"Start it: `course start {chosen.id}`.", code="not_started")
     why_not = ""
     if there and path.read_bytes() == stub:
         why_not = f"{shown} is the stub already; nothing was changed."
@@ -126,11 +118,8 @@ def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would b
 
 def _agreed(console: Console, shown: str) -> bool:
     if not console.interactive:
-        raise UsageError(
-            f"This would replace {shown}, and there is no terminal to ask on.",
-            help="Add --yes; a copy of the file is kept.",
-            code="needs_yes",
-        )
+        problem = f"This would replace {shown}, and there is no terminal to ask on."
+        raise UsageError(problem, help="Add --yes; a copy of the file is kept.", code="needs_yes")
     return console.confirm(f"Replace {shown} with the stub? A copy of yours is kept.")
 
 
@@ -141,17 +130,12 @@ def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
     from course.notebooks.build import WORKSPACE, generate  # a lesson opens without it
 
     for notebook in generate(here.catalog, layout=WORKSPACE, there=here.workspace.root):
-        yield _update_notebook(here, notebook, dry_run=dry_run)
-
-
-def _update_notebook(here: Here, notebook: Generated, *, dry_run: bool) -> Change:
-    """The same for a notebook, in which newer text is put around the student's work."""
-    path, new, action = here.workspace.root / notebook.path, notebook.data, "beside"
-    mine = read_notebook(path)
-    with contextlib.suppress(CannotMergeError):
-        new = merged(mine, notebook.data)
-        action = "current" if new == mine else "replace" if is_untouched(mine) else "merge"
-    return _put(path, f"{path.stem}.new.ipynb", new, action, dry_run=dry_run or action == "current")
+        path, new, action = here.workspace.root / notebook.path, notebook.data, "beside"
+        mine = read_notebook(path)
+        with contextlib.suppress(CannotMergeError):  # newer text is put around the student's work
+            new = merged(mine, notebook.data)
+            action = "current" if new == mine else "replace" if is_untouched(mine) else "merge"
+        yield _put(path, f"{path.stem}.new.ipynb", new, action, dry_run=dry_run or action == "current")
 
 
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
@@ -177,29 +161,21 @@ def _put(path: Path, beside: str, new: bytes, action: str, *, dry_run: bool) -> 
     """Write the newer content where the action wants it, with a copy of what it replaces."""
     to = path.with_name(beside) if action == "beside" else path
     kept = None if dry_run else write(to, new, why="update").backup
-    return Change(
-        path=str(path),
-        action=action,
-        new=str(to) if action == "beside" else None,
-        backup=kept.backup if kept else None,
-    )
+    return Change(str(path), action, str(to) if to != path else None, kept.backup if kept else None)
 
 
 def _sentence(here: Here, change: Change, *, dry_run: bool) -> str:
-    name = here.workspace.shown(Path(change.path))
     kept = f" The old one is kept at {here.workspace.shown(Path(change.backup))}." if change.backup else ""
-    if change.action == "replace":
-        verb = "would be replaced" if dry_run else "was replaced"
-        return f"{name}: {verb} by the newer one; you had not edited it.{kept}"
-    if change.action == "merge":
-        return f"{name}: newer text {'would be' if dry_run else 'was'} put around your work.{kept}"
-    if change.action == "beside":
-        verb = "would be put" if dry_run else "is"
-        beside = here.workspace.shown(Path(change.new or ""))
-        return f"{name}: you edited it, so it stays; the newer one {verb} beside it as {beside}.{kept}"
-    if change.action == "missing":
-        return f"{name}: not there, and left so; `course start` would put it back."
-    return f"{name}: up to date."
+    was, put = ("would be", "would be put") if dry_run else ("was", "is")
+    beside = f"{put} beside it as {here.workspace.shown(Path(change.new or ''))}"
+    said = {
+        "replace": f"{was} replaced by the newer one; you had not edited it.{kept}",
+        "merge": f"newer text {was} put around your work.{kept}",
+        "beside": f"you edited it, so it stays; the newer one {beside}.{kept}",
+        "missing": "not there, and left so; `course start` would put it back.",
+        "current": "up to date.",
+    }
+    return f"{here.workspace.shown(Path(change.path))}: {said[change.action]}"
 
 
 def _lines(data: bytes) -> list[str]:

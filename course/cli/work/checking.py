@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
-from course.catalog.models import CourseRef, Exercise
+from course.catalog.models import CourseRef
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.options import ExerciseName, Verbose, check_ids, choice_of, option
@@ -110,7 +110,7 @@ def check(
         with kept_sandboxes():
             return _check_all(console, here, verbose=verbose, form=form)
     chosen = chosen_work(here, *asked_for(here, exercise))
-    reply = _check_one(console, here, chosen, only=only, verbose=verbose, form=form)
+    reply = _check_one(here, chosen, only=only or "", verbose=verbose, form=form)
     if reply.next is not None and form == "text":
         console.next(reply.next.command)
     return here.answer(reply)
@@ -136,33 +136,22 @@ def reply_to(
         printed: the file's output while it was loaded.
         curves: of its failed checks.
     """
+    code, following = 0 if verdict.all_pass else 1, NextStep(step) if step else None
     return filled(
-        Check,
-        verdict,
-        exit_code=0 if verdict.all_pass else 1,
-        course=course,
-        next=NextStep(step) if step else None,
-        printed=printed,
-        curves=curves,
+        Check, verdict, exit_code=code, course=course, next=following, printed=printed, curves=curves
     )
 
 
 def _check_one(
-    console: Console,
-    here: Here,
-    work: StudentWork,
-    *,
-    only: str | None = None,
-    one_of_many: bool = False,
-    verbose: bool = False,
-    form: str = "text",
+    here: Here, work: StudentWork, *, verbose: bool, form: str, only: str = "", one_of_many: bool = False
 ) -> Check:
     """Check, record, show; raises the error if it cannot be checked."""
-    exercise = work.exercise
+    console, exercise, last = current(), work.exercise, here.known_history(work.exercise).last
     if form == "text":
         report_source_file(console, here, work)
-    with console.working(f"Checking {exercise.id}{_estimate(here, exercise)}"):
-        made = attempts.attempt(exercise, here.catalog, work.submission, only or "")
+    took = f", about {last.seconds:.0f} s" if last is not None and last.seconds >= 1 else ""
+    with console.working(f"Checking {exercise.id}{took}"):
+        made = attempts.attempt(exercise, here.catalog, work.submission, only)
     verdict = made.verdict
     here.record("check", exercise.id, made.data(here.catalog.version, one_of_many=one_of_many))
     if form == "text":
@@ -176,43 +165,36 @@ def _check_one(
         brief = exercise.is_warm_up and not verbose
         if console.draws:  # above, so that the finding stays on the screen
             show_curve(console, made)
-        if only is None:  # first the functions that the last edit broke, and those that it fixed
+        if not only:  # first the functions that the last edit broke, and those that it fixed
             fixed, broke = (
                 [f"{task.title}  [{task.id}]" for task in exercise.task if task.id in changed]
                 for changed in here.known_history(exercise).changed_tasks()
             )
             show_changes(console, broke, fixed)
-        show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
+        show_verdict(console, exercise, verdict, verbose=verbose, whole=not only, brief=brief)
         if not console.draws:
             show_curve(console, made, drawn=False)
     else:
         annotate(console, here, work, verdict, form)
-    step = next_step(here, made) if only is None or not verdict.all_pass else ""
+    step = next_step(here, made) if not only or not verdict.all_pass else ""
     again = f"course check {exercise.id}"
     return reply_to(here.course, verdict, step or again, made.printed, curve_replies(made))
 
 
 def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:
-    known = worked_on(here)
-    # A repository may lack the record of started exercises, but it has the files.
-    started = [
-        one
-        for one in here.catalog.exercises()
-        if one in known or here.workspace.path(one.place, one.module).is_file()
-    ]
-    if not started:
-        raise here.nothing_started()
     results: list[Check | ErrorReply] = []
-    for exercise in started:
+    for exercise in worked_on(here):
         if form == "text":
             console.heading(exercise.id)
         try:
             work = chosen_work(here, exercise)
-            results.append(_check_one(console, here, work, one_of_many=True, verbose=verbose, form=form))
+            results.append(_check_one(here, work, one_of_many=True, verbose=verbose, form=form))
         except CourseError as error:
             console.error(error.message, error.help)
-            body = ErrorBody(code=error.code, message=error.message, help=error.help)
+            body = filled(ErrorBody, error)
             results.append(ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body))
+    if not results:
+        raise here.nothing_started()
     complete = sum(result.ok for result in results)
     pass_ = "passes" if complete == 1 else "pass"
     said = f"{complete} of {counted(len(results), 'exercise')} {pass_} every public check."
@@ -221,9 +203,3 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
         console.warn(warning)
     worst = max(result.exit_code for result in results)
     return console.answer(CheckAll(exit_code=worst, results=tuple(results)))
-
-
-def _estimate(here: Here, exercise: Exercise) -> str:
-    """How long it took last time, if that was long."""
-    last = here.known_history(exercise).last
-    return f", about {last.seconds:.0f} s" if last is not None and last.seconds >= 1 else ""

@@ -84,11 +84,8 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
                 return exercise, name
     check = command("notebook", "check", wanted)
     elsewhere = f"; {check} checks this notebook" if path.suffix == NOTEBOOK else ""
-    raise NotFoundError(
-        f"{wanted} is not where a file of an exercise lies in this workspace.",
-        help=f"Name the exercise{elsewhere}.",
-        code="exercise_not_found",
-    )
+    problem = f"{wanted} is not where a file of an exercise lies in this workspace."
+    raise NotFoundError(problem, help=f"Name the exercise{elsewhere}.", code="exercise_not_found")
 
 
 def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> StudentWork:
@@ -114,13 +111,16 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Stu
 
 
 def worked_on(here: Here) -> tuple[Exercise, ...]:
-    """The exercises that were started, or whose notebook was edited."""
-    started = here.workspace.started()
-    return tuple(
-        exercise
-        for exercise in here.catalog.exercises()
-        if exercise.id in started or _handed_in_notebook(here, exercise)[0] is not None
-    )
+    """The exercises that were started, that have a file, or whose notebook was edited.
+
+    A repository may lack the record of started exercises, but it has the files.
+    """
+    started, found = here.workspace.started(), []
+    for one in here.catalog.exercises():
+        there = one.id in started or here.workspace.path(one.place, one.module).is_file()
+        if there or _handed_in_notebook(here, one)[0] is not None:
+            found.append(one)
+    return tuple(found)
 
 
 def work_of(
@@ -165,13 +165,10 @@ def _notebook_name(exercise: Exercise) -> str:
 
 def _module(here: Here, exercise: Exercise) -> StudentWork:
     source = here.source(exercise)
-    other = here.misnamed(exercise)
-    note = (
-        f"{exercise.place}/{other} is not read: the file that counts is {exercise.module}. Capitals matter."
-    )
-    return StudentWork(
-        exercise, exercise.module, source, source, here.stub(exercise), notes=(note,) if other else ()
-    )
+    name, other = exercise.module, here.misnamed(exercise)
+    note = f"{exercise.place}/{other} is not read: the file that counts is {name}. Capitals matter."
+    notes = (note,) if other else ()
+    return StudentWork(exercise, name, source, source, here.stub(exercise), notes=notes)
 
 
 def _notebook(here: Here, exercise: Exercise) -> StudentWork:
@@ -187,19 +184,15 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
     name = _notebook_name(exercise)
     path = here.workspace.path(exercise.place, name)
     if not path.exists():
-        raise UngradableError(
-            f"There is no file {here.workspace.shown(path)}.",
-            help=f"`course notebook build {exercise.id}` puts one there.",
-            code="no_file",
-        )
+        problem = f"There is no file {here.workspace.shown(path)}."
+        fix = f"`course notebook build {exercise.id}` puts one there."
+        raise UngradableError(problem, help=fix, code="no_file")
     data = read_notebook(path)
     module = notebook_source(data, exercise, name)
     if len(module.source) > MAX_FILE:
-        raise UngradableError(
-            f"The functions of {name} are larger than {MAX_FILE:,} bytes.",
-            help="Keep data out of them; the exercise needs none.",
-            code="too_large",
-        )
+        problem = f"The functions of {name} are larger than {MAX_FILE:,} bytes."
+        fix = "Keep data out of them; the exercise needs none."
+        raise UngradableError(problem, help=fix, code="too_large")
     given = notebook_source(exercise_notebook(here.catalog, exercise), exercise)
     return StudentWork(exercise, name, data, module.source, given.source, module)
 

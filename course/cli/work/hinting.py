@@ -1,4 +1,4 @@
-"""``course hint`` and ``course solution``: as much help as the student has worked for.
+"""``course hint``, ``solution`` and ``reflect``: as much help as the student has worked for.
 
 Hints come one at a time, and each needs an attempt since the last one: a failed check of changed code. The
 next hint fits that check's diagnosis, or else is the mildest one left. The number left is never shown,
@@ -6,6 +6,7 @@ because students who see a countdown click through it.
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -126,11 +127,8 @@ def _task(exercise: Exercise, history: History, wanted: str | None) -> str | Non
     failing, new = history.failing_tasks(), history.unwritten_tasks()
     known = [task.id for task in exercise.task]
     if wanted is not None and wanted not in known:
-        raise NotFoundError(
-            f"{exercise.id} has no function called {wanted!r}.",
-            help=f"It has: {', '.join(known)}.",
-            code="task_not_found",
-        )
+        problem = f"{exercise.id} has no function called {wanted!r}."
+        raise NotFoundError(problem, help=f"It has: {', '.join(known)}.", code="task_not_found")
     candidates = known if wanted is None else [wanted]
     found = [task for task in candidates if task in failing]
     return next((task for task in found if task not in new), found[0] if found else None)
@@ -138,10 +136,9 @@ def _task(exercise: Exercise, history: History, wanted: str | None) -> str | Non
 
 def _file_name(here: Here, exercise: Exercise) -> str:
     """The file that the student works in, as far as it is known."""
-    try:
+    with suppress(CourseError):
         return chosen_work(here, exercise).name
-    except CourseError:
-        return exercise.module
+    return exercise.module
 
 
 def solution(exercise: ExerciseName = None) -> int:
@@ -160,7 +157,11 @@ def solution(exercise: ExerciseName = None) -> int:
             code="not_passed",
         )
     source, files = _released(here, chosen)
-    _show_files(console, source, files)
+    console.note(f"From {source}")
+    for name, text in files.items():
+        if not console.quiet:
+            console.heading(name)
+        console.block(text, language="python" if Path(name).suffix == ".py" else "")
     here.record("solution", chosen.id, {"source": source})
     return here.answer(Solution(exercise=chosen.id, source=source, files=dict(files)))
 
@@ -189,23 +190,13 @@ def _released(here: Here, exercise: Exercise) -> tuple[str, Mapping[str, str]]:
         return str(folder), _texts({p.name: p.read_bytes() for p in found if p.is_file()})
     if problem is not None:
         raise problem
-    raise NotFoundError(
-        f"No solution of {exercise.id} has been released to this machine.",
-        help=f"Your instructor hands one out as a .coursepack file; put it into {here.workspace.root}.",
-        code="no_solution",
-    )
+    said = f"No solution of {exercise.id} has been released to this machine."
+    fix = f"Your instructor hands one out as a .coursepack file; put it into {here.workspace.root}."
+    raise NotFoundError(said, help=fix, code="no_solution")
 
 
 def _texts(files: Mapping[str, bytes]) -> dict[str, str]:
     return {name: data.decode("utf-8", "replace") for name, data in sorted(files.items())}
-
-
-def _show_files(console: Console, source: str, files: Mapping[str, str]) -> None:
-    console.note(f"From {source}")
-    for name, text in files.items():
-        if not console.quiet:
-            console.heading(name)
-        console.block(text, language="python" if Path(name).suffix == ".py" else "")
 
 
 # ---
@@ -243,13 +234,19 @@ def reflect(
     elif not said and console.interactive:
         said = _typed(console)
     if said:
-        _long_enough(said, rubric)
+        words = len(said.split())
+        if words < rubric.least_words:
+            least = f"a good one is shown once yours has {rubric.least_words}"
+            fix = "Write it as you would explain it to a colleague."
+            problem = f"Your answer has {counted(words, 'word')}; {least}."
+            raise UsageError(problem, help=fix, code="too_short")
         if said != kept:
             graded = ()
             here.record(KIND, chosen.id, {"text": said})
-        graded = _judged(console, here, chosen, rubric, grades, graded)
+        graded = _judged(here, chosen, rubric, grades, graded)
     elif grades is not None:
         raise UsageError("There is no answer to grade yet.", help="Give it with --answer FILE.")
+    points = tuple(map(ReflectPoint, rubric.points, graded or [None] * len(rubric.points)))
     step = f"course reflect {chosen.id}" + ("" if graded else " --grades …" if said else " --answer FILE")
     if not graded:
         console.next(step)
@@ -259,12 +256,7 @@ def reflect(
             question=_flowing(rubric.question),
             answer=said or None,
             good_answer=rubric.good_answer.strip() if said else None,
-            points=tuple(
-                ReflectPoint(point, graded[index] if graded else None)
-                for index, point in enumerate(rubric.points)
-            )
-            if said
-            else (),
+            points=points if said else (),
             next=None if graded else NextStep(step),
         )
     )
@@ -279,17 +271,13 @@ def _rubric(here: Here, chosen: Exercise) -> Rubric:
     rubric = here.catalog.rubric(chosen)
     if rubric is None:
         having = [one.id for one in here.catalog.exercises() if here.catalog.rubric(one) is not None]
-        raise NotFoundError(
-            f"{chosen.id} has no question to answer in prose.",
-            help=f"These have one: {', '.join(having)}." if having else "This course has none.",
-            code="nothing_to_reflect_on",
-        )
+        problem = f"{chosen.id} has no question to answer in prose."
+        fix = f"These have one: {', '.join(having)}." if having else "This course has none."
+        raise NotFoundError(problem, help=fix, code="nothing_to_reflect_on")
     if here.history(chosen).first_pass is None:
-        raise NotFoundError(
-            f"The question of {chosen.id} comes once its checks reach the pass mark.",
-            help=f"Work on it first: course watch {chosen.id}",
-            code="not_passed_yet",
-        )
+        problem = f"The question of {chosen.id} comes once its checks reach the pass mark."
+        fix = f"Work on it first: course watch {chosen.id}"
+        raise NotFoundError(problem, help=fix, code="not_passed_yet")
     return rubric
 
 
@@ -324,54 +312,31 @@ def _typed(console: Console) -> str:
     return "\n".join(lines)
 
 
-def _long_enough(said: str, rubric: Rubric) -> None:
-    words = len(said.split())
-    if words < rubric.least_words:
-        raise UsageError(
-            f"Your answer has {counted(words, 'word')}; a good one is shown once yours has "
-            f"{rubric.least_words}.",
-            help="Write it as you would explain it to a colleague.",
-            code="too_short",
-        )
-
-
 def _judged(
-    console: Console,
-    here: Here,
-    chosen: Exercise,
-    rubric: Rubric,
-    grades: str | None,
-    before: tuple[str, ...],
+    here: Here, chosen: Exercise, rubric: Rubric, grades: str | None, before: tuple[str, ...]
 ) -> tuple[str, ...]:
     """Show the good answer and the points, with grades from the command line, the student or the record."""
+    console = current()
     console.blank()
     console.heading("A good answer")
     for paragraph in rubric.good_answer.strip().split("\n\n"):
         console.line(_flowing(paragraph))
         console.blank()
     console.heading("What to grade yours by", "yes, partly or no")
+    chosen_grades = before
     if grades is not None:
-        chosen_grades = _parsed(grades, rubric)
+        chosen_grades = tuple(word.strip().lower() for word in grades.split(","))
+        if len(chosen_grades) != len(rubric.points) or not set(chosen_grades) <= set(GRADES):
+            problem = f"--grades takes {len(rubric.points)} of yes, partly and no, joined by commas."
+            raise UsageError(problem, help=f"For example: --grades {','.join(['yes'] * len(rubric.points))}")
     elif console.interactive and not before:
         chosen_grades = _asked(console, rubric)
-    else:
-        chosen_grades = before
     for number, point in enumerate(rubric.points, 1):
         grade = f"  {chosen_grades[number - 1]}" if chosen_grades else ""
         console.line(f"{number}. {point}", (grade, "bold"), indent=2)
     if chosen_grades and chosen_grades != before:
         here.record(KIND, chosen.id, {"grades": list(chosen_grades)})
     return chosen_grades
-
-
-def _parsed(grades: str, rubric: Rubric) -> tuple[str, ...]:
-    given = tuple(word.strip().lower() for word in grades.split(","))
-    if len(given) != len(rubric.points) or not set(given) <= set(GRADES):
-        raise UsageError(
-            f"--grades takes {len(rubric.points)} of yes, partly and no, joined by commas.",
-            help=f"For example: --grades {','.join(['yes'] * len(rubric.points))}",
-        )
-    return given
 
 
 def _asked(console: Console, rubric: Rubric) -> tuple[str, ...]:

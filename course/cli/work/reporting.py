@@ -43,10 +43,8 @@ def report(
         made = report_of(chosen, here.catalog, work.submission)
     folder = _folder(here, chosen.place, out)
     console.heading(made.title, chosen.id)
-    sections = tuple(
-        _shown(console, section, folder / f"{number}-{_slug(section.title)}.png")
-        for number, section in enumerate(made.sections, 1)
-    )
+    files = (folder / f"{n}-{_slug(one.title)}.png" for n, one in enumerate(made.sections, 1))
+    sections = tuple(_shown(console, *both) for both in zip(made.sections, files, strict=True))
     written = _write_bag(console, made, bag) if bag is not None else None
     console.next(after_report(here, chosen))
     return here.answer(
@@ -59,11 +57,8 @@ def _folder(here: Here, place: str, out: Path | None) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UsageError(
-            f"The folder {folder} cannot be made ({error.strerror or error}).",
-            help="Name another one with --out.",
-            code="not_writable",
-        ) from error
+        problem = f"The folder {folder} cannot be made ({error.strerror or error})."
+        raise UsageError(problem, help="Name another one with --out.", code="not_writable") from error
     return folder
 
 
@@ -83,9 +78,7 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
             console.line(item.strip(), indent=2)
     if section.rows:
         console.table_or_facts(section.columns, section.rows)
-    figure = None
-    if section.plot is not None:
-        figure = _drawn(console, section.plot, path)
+    figure = _drawn(console, section.plot, path) if section.plot is not None else None
     description = section.plot.description if section.plot else ""
     return filled(SectionReply, section, figure=figure, description=description)
 
@@ -105,11 +98,9 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
 
 def _write_bag(console: Console, made: Report, bag: Path) -> str:
     if not made.streams:
-        raise UsageError(
-            "This report has no sensor streams to write.",
-            help="Its sensors are not written yet, or the exercise has none.",
-            code="no_streams",
-        )
+        problem = "This report has no sensor streams to write."
+        fix = "Its sensors are not written yet, or the exercise has none."
+        raise UsageError(problem, help=fix, code="no_streams")
     from course.simulations.bags import KINDS, VIEW, streams_from, write_bag
 
     path, streams = named(bag), streams_from(made.streams)

@@ -121,11 +121,8 @@ def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str
     files = {work.path: work.data for work in works}
     data = archive(here.catalog.course_id, here.catalog.version, files, quiz)
     if len(data) > MAX_UNPACKED:
-        raise UngradableError(
-            f"Together the files are larger than {MAX_UNPACKED:,} bytes, which no grading run unpacks.",
-            help="Keep data out of them.",
-            code="too_large",
-        )
+        problem = f"Together the files are larger than {MAX_UNPACKED:,} bytes, which no grading run unpacks."
+        raise UngradableError(problem, help="Keep data out of them.", code="too_large")
     return data
 
 
@@ -140,9 +137,8 @@ def _target(here: Here, output: Path | None, only: Sequence[Exercise]) -> Path:
     if not path.parent.is_dir():
         raise UsageError(f"There is no folder {path.parent}.", help="Make it, or name another file.")
     if path.suffix.lower() != ".zip":
-        raise UsageError(
-            f"{path.name} does not end in .zip.", help="Name a .zip file with -o.", code="not_a_zip"
-        )
+        problem = f"{path.name} does not end in .zip."
+        raise UsageError(problem, help="Name a .zip file with -o.", code="not_a_zip")
     return path
 
 
@@ -185,23 +181,18 @@ def _checked(console: Console, here: Here, works: Sequence[StudentWork]) -> list
 def _check(here: Here, work: StudentWork) -> _GoesIn:
     try:
         made = attempts.attempt(work.exercise, here.catalog, work.submission)
-        if not _is_known(here, work):
+        last = here.known_history(work.exercise).last_graded
+        if last is None or last.fingerprint != fingerprint(
+            work.source
+        ):  # no check of this very work is known
             here.record("check", work.exercise.id, made.data(here.catalog.version, one_of_many=True))
     except CourseError as error:
         return _GoesIn(work, None, (f"{work.path} could not be checked: {error.message} {error.help}",))
     verdict = made.verdict
     notes = [f"{work.path}: {note.removeprefix(f'{work.name}, ')}" for note in verdict.warnings]
-    if verdict.error is not None:
-        notes.insert(
-            0, f"{work.path} cannot be graded as it is: {verdict.error.message} {verdict.error.help}"
-        )
+    if (why := verdict.error) is not None:
+        notes.insert(0, f"{work.path} cannot be graded as it is: {why.message} {why.help}")
     return _GoesIn(work, verdict, tuple(notes))
-
-
-def _is_known(here: Here, work: StudentWork) -> bool:
-    """Whether the record has a check of this very work."""
-    last = here.known_history(work.exercise).last_graded
-    return last is not None and last.fingerprint == fingerprint(work.source)
 
 
 def _quiz_records(here: Here) -> list[dict[str, object]]:
@@ -228,16 +219,11 @@ def _show(
         console.line(f"{one.work.path}: {len(one.work.data):,} bytes, {_score(one)}", indent=2)
     if quiz:
         best = max(quiz, key=lambda record: record["score"])
-        score = f"best {best['score']} of {len(best['questions'])}"
-        console.line(
-            f"The quiz: {counted(len(quiz), 'attempt')}, {score}; scored again when graded", indent=2
-        )
+        score = f"{counted(len(quiz), 'attempt')}, best {best['score']} of {len(best['questions'])}"
+        console.line(f"The quiz: {score}; scored again when graded", indent=2)
     if files or quiz:
-        console.line(
-            f"{MANIFEST}: the course ({here.course.id} {here.course.version}), "
-            "checksums, and which Python and NumPy you have",
-            indent=2,
-        )
+        also = "checksums, and which Python and NumPy you have"
+        console.line(f"{MANIFEST}: the course ({here.course.id} {here.course.version}), {also}", indent=2)
     for why in dict.fromkeys(item.action for item in left_out):
         console.line(f"Left out: {', '.join(item.path for item in left_out if item.action == why)} ({why}).")
     known = {Path(path).parent.name for path in (*files, *(item.path for item in left_out))}

@@ -6,7 +6,8 @@ ones, and the summary is last, where the eye is when a terminal has finished scr
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib.util import decode_source
 from pathlib import Path
@@ -85,9 +86,8 @@ def show_verdict(
         keyed: keys show what is kept back, and they are named below.
     """
     if not console.quiet:
-        page = _Page(
-            console=console, verbose=verbose, brief=brief, focus=focus, scored=not exercise.is_warm_up
-        )
+        scored = not exercise.is_warm_up
+        page = _Page(console=console, verbose=verbose, brief=brief, focus=focus, scored=scored)
         page.tasks([(task, [c for c in verdict.checks if c.task == task.id]) for task in exercise.task])
         # Checks of a task that the exercise does not list must not vanish.
         known = {task.id for task in exercise.task}
@@ -101,8 +101,9 @@ def show_verdict(
             console.note((f"Your code printed in {what}; --verbose shows it.", "dim"))
         for warning in verdict.warnings:
             console.line(f"Note: {warning}")
-    sentences = summary(exercise, verdict) if whole else _part(verdict)
-    for sentence in sentences:
+    passing, total = sum(check.status == "pass" for check in verdict.checks), len(verdict.checks)
+    part = f"{passing} of {total} {'check passes' if passing == total == 1 else 'checks pass'}."
+    for sentence in summary(exercise, verdict) if whole else [part]:
         console.line((sentence, "bold green" if verdict.all_pass else "bold"))
 
 
@@ -146,11 +147,6 @@ def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
     ]
 
 
-def _part(verdict: Verdict) -> list[str]:
-    passing, total = sum(check.status == "pass" for check in verdict.checks), len(verdict.checks)
-    return [f"{passing} of {total} {'check passes' if passing == total == 1 else 'checks pass'}."]
-
-
 @dataclass(kw_only=True)
 class _Page:
     """Shows one verdict; remembers what it has said, so as not to say it seven times."""
@@ -169,14 +165,10 @@ class _Page:
 
     def tasks(self, tasks: Tasks) -> None:
         """The functions that pass, the unwritten ones, and last those that fail."""
-        done: list[tuple[Task, Sequence[CheckResult]]] = []
-        unwritten, failing = done.copy(), done.copy()
-        for task, checks in tasks:
-            if is_unwritten(checks):
-                unwritten.append((task, checks))
-            elif checks:
-                whole = all(check.status == "pass" for check in checks)
-                (done if whole else failing).append((task, checks))
+        unwritten = [pair for pair in tasks if is_unwritten(pair[1])]
+        begun = [pair for pair in tasks if pair[1] and pair not in unwritten]
+        done = [pair for pair in begun if all(check.status == "pass" for check in pair[1])]
+        failing = [pair for pair in begun if pair not in done]
         if self.brief and failing:
             failing = [self._but_one(done, unwritten, failing)]
         else:
@@ -208,7 +200,10 @@ class _Page:
         """A heading with the points, and the task's checks."""
         self.console.heading(title, self._worth(checks))
         if _all_alike(checks) and not self.hidden:
-            self._alike(next(check for check in checks if check.status != "skip"))
+            # The same thing keeps every check of the task from running: say it once.
+            check = next(check for check in checks if check.status != "skip")
+            self._label(check.status, check.message)
+            self._details(check)
         elif self.brief and not self.verbose:
             self._first_failure(checks)
         else:
@@ -234,9 +229,8 @@ class _Page:
         every = [check for _, checks in tasks for check in checks]
         self.console.heading("Still to do", self._worth(every))
         for task, _ in tasks:
-            self.console.item(
-                "to do", task.title, (f"  [{task.id}]", "dim"), style="yellow", width=_LABEL_WIDTH
-            )
+            aside = (f"  [{task.id}]", "dim")
+            self.console.item("to do", task.title, aside, style="yellow", width=_LABEL_WIDTH)
         of: dict[str, dict[str, None]] = {}
         for check in every:
             if check.unwritten:
@@ -290,11 +284,6 @@ class _Page:
         if self._kept_back:
             self.console.note(("--verbose shows tracebacks.", "dim"))
 
-    def _alike(self, check: CheckResult) -> None:
-        """The same thing keeps every check of the task from running: say it once."""
-        self._label(check.status, check.message)
-        self._details(check)
-
     def _details(self, check: CheckResult) -> None:
         if check.help and check.help not in self._said:
             self._text(check.help)
@@ -309,21 +298,15 @@ class _Page:
             self.console.item("diagnosis", check.diagnosis, style="dim", **place)
         self._said.add(check.help)
         self._printed(check)
-        if check.traceback and self.verbose:
-            show_lines(
-                self.console,
-                "Traceback, your lines only:",
-                check.traceback,
-                whole=True,
-                indent=_DETAIL_INDENT,
-            )
+        if self.verbose:
+            self._lines("Traceback, your lines only:", check.traceback)
         self._kept_back |= bool(check.traceback) and not self.verbose
 
     def _printed(self, check: CheckResult) -> None:
-        if check.stdout:
-            show_lines(
-                self.console, "Your code printed:", check.stdout, whole=self.verbose, indent=_DETAIL_INDENT
-            )
+        self._lines("Your code printed:", check.stdout)
+
+    def _lines(self, heading: str, text: str | None) -> None:
+        show_lines(self.console, heading, text or "", whole=self.verbose, indent=_DETAIL_INDENT)
 
     def _text(self, text: str) -> None:
         if text:
@@ -378,7 +361,9 @@ def annotate(console: Console, here: Here, work: StudentWork, verdict: Verdict, 
         said.add((line, check.message))
         level = "warning" if check.status == "grader_error" else "error"
         title = f"{check.title} [{check.id}]"
-        console.raw(_shown(form, level, _path(here, work, form), line, title, "\n".join(_words(check))))
+        words = [check.message or f"This check ended in: {check.status}.", check.help]
+        words += [f"{label}: {text}" for label, text in numbers_of(check)]
+        console.raw(_shown(form, level, _path(here, work, form), line, title, "\n".join(filter(None, words))))
 
 
 def annotate_error(console: Console, here: Here, work: StudentWork, error: CourseError, form: str) -> None:
@@ -417,13 +402,6 @@ def _property(text: str) -> str:
     return _data(text).replace(":", "%3A").replace(",", "%2C")
 
 
-def _words(check: CheckResult) -> Iterator[str]:
-    yield check.message or f"This check ended in: {check.status}."
-    if check.help:
-        yield check.help
-    yield from (f"{label}: {text}" for label, text in numbers_of(check))
-
-
 def unread_line(source: bytes | str) -> int:
     """The line where Python stops parsing a file; 1 if it parses all of it."""
     try:
@@ -457,7 +435,6 @@ def _path(here: Here, work: StudentWork, form: str) -> str:
     """A path relative to the folder of the lines' reader, with slashes on every system."""
     path = here.workspace.path(work.exercise.place, work.name)
     top = os.environ.get("GITHUB_WORKSPACE") if form == "github" else None
-    try:
+    with suppress(ValueError):
         return path.resolve().relative_to(Path(top).resolve() if top else cwd().resolve()).as_posix()
-    except ValueError:
-        return path.as_posix()
+    return path.as_posix()

@@ -8,25 +8,14 @@ from textual.events import Resize
 
 from course.catalog.blocks import Task
 from course.catalog.load import Catalog
+from course.cli.reading.screen import items
 from course.cli.reading.screen.asking import Choice, Edit, Find, keys_table
-from course.cli.reading.screen.items import (
-    AnswerItem,
-    FigureItem,
-    TaskItem,
-    answer,
-    cell_at_hand,
-    in_sight,
-    items_of,
-    keys_of,
-    unjudged,
-)
 from course.cli.reading.screen.page import Item, Page
 from course.cli.reading.screen.running import Drawer
 from course.full_screen import FullScreenApp, TextOverlay
 from course.progress.workspace import Workspace
-from course.reading.record import Judgement, Place, find
+from course.reading.record import JUDGEMENTS, Place, find
 
-_JUDGED: dict[str, Judgement] = {"1": "right", "2": "nearly", "3": "wrong"}
 #: How often the last line and running work are looked at, in s.
 _TICK = 0.25
 _WHEEL = 3
@@ -64,9 +53,9 @@ class ReaderApp(FullScreenApp):
             ("shift+tab", "item(-1)"),
             ("enter", "act"),
             ("s", "skip"),
-            ("1", "judge('1')"),
-            ("2", "judge('2')"),
-            ("3", "judge('3')"),
+            ("1", "judge(1)"),
+            ("2", "judge(2)"),
+            ("3", "judge(3)"),
             ("r", "do('run')"),
             ("e", "do('edit')"),
             ("u", "do('undo')"),
@@ -95,7 +84,7 @@ class ReaderApp(FullScreenApp):
         self._first, self._section = first, section
         self._wanted = ""
         shown = pictures if self.in_colour else None
-        self.page = Page(self, catalog, workspace, shown, items_of, keys_of)
+        self.page = Page(self, catalog, workspace, shown, items.items_of, items.keys_of)
 
     # -- coming and going --------------------------------------------------------------------------------
 
@@ -173,13 +162,13 @@ class ReaderApp(FullScreenApp):
     def action_item(self, way: int) -> None:
         """The next thing on this screen that keys act on, links last; then the first of the next screen."""
         self.hush()
-        items, item = sorted(self.page.items(), key=lambda one: one.inline), self.page.item
-        at = items.index(item) + way if item in items else (0 if way > 0 else -1)
-        if not items or at >= len(items) or (at < 0 and item in items):
+        found, item = sorted(self.page.items(), key=lambda one: one.inline), self.page.item
+        at = found.index(item) + way if item in found else (0 if way > 0 else -1)
+        if not found or at >= len(found) or (at < 0 and item in found):
             self.action_turn("next" if way > 0 else "previous")
-            items, at = sorted(self.page.items(), key=lambda one: one.inline), 0 if way > 0 else -1
-        if items:
-            self.page.item = items[at]
+            found, at = sorted(self.page.items(), key=lambda one: one.inline), 0 if way > 0 else -1
+        if found:
+            self.page.item = found[at]
             self.page.say_round()
 
     def action_return(self) -> None:
@@ -218,14 +207,14 @@ class ReaderApp(FullScreenApp):
     def action_do(self, act: str) -> None:
         """Run or change the task at hand, or else the cell; undo, copy or write the cell."""
         item: Item | None = self.page.item
-        if not (isinstance(item, TaskItem) and hasattr(item, act)):
-            item = cell_at_hand(self.page)
+        if not (isinstance(item, items.TaskItem) and hasattr(item, act)):
+            item = items.cell_at_hand(self.page)
         if item is not None:
             getattr(item, act)(self.page)
 
     def action_hint(self) -> None:
         """The hint that is due at the task at hand; all keys elsewhere."""
-        if isinstance(self.page.item, TaskItem):
+        if isinstance(self.page.item, items.TaskItem):
             self.page.item.ask_hint(self.page)
         else:
             self.action_help()
@@ -235,17 +224,17 @@ class ReaderApp(FullScreenApp):
         item = self.page.item
         question = self.page.progress.asked_by(item.block) if item is not None else None
         if question is not None:
-            answer(self.page, question, "")
+            items.answer(self.page, question, "")
 
-    def action_judge(self, key: str) -> None:
+    def action_judge(self, key: int) -> None:
         """How good a prediction was; its answer may be in sight while the cell above it is at hand."""
         item = self.page.item
-        judged = item if isinstance(item, AnswerItem) else unjudged(self.page)
+        judged = item if isinstance(item, items.AnswerItem) else items.unjudged(self.page)
         if judged is not None:
-            judged.judge(self.page, _JUDGED[key])
+            judged.judge(self.page, JUDGEMENTS[key - 1])
 
     def action_open_figure(self) -> None:
-        figure = in_sight(self.page, FigureItem)
+        figure = items.in_sight(self.page, items.FigureItem)
         if figure is not None:
             figure.act(self.page)
         else:
@@ -254,22 +243,42 @@ class ReaderApp(FullScreenApp):
     # -- finding -----------------------------------------------------------------------------------------
 
     def action_contents(self) -> None:
-        """The sections of this lesson, and the other lessons, with what is done."""
-        self.page.keep_place()
-        options, at = _contents(self.page)
-        self.push_screen(Choice(self.page.progress.script.lesson.title, options, at), self._chosen)
+        """The sections of this lesson with its tasks, and all lessons, with what is done."""
+        page = self.page
+        page.keep_place()
+        progress, script, options, at = page.progress, page.progress.script, list[tuple[str, str]](), ""
+        here = (page.place() or Place()).block
+        for section in script.sections:
+            done = progress.is_done(section.start, section.end)
+            asked = [q for q in script.questions if section.start <= q.index < section.end]
+            open_ = sum(progress.prediction(q) is None for q in asked)
+            more = f"   {open_} to predict" if open_ and section.level == 2 else ""
+            indent = "  " * (section.level - 2)
+            words = f"{'✓' if done else ' '} {indent}{section.title}{more}"
+            options.append((f"block:{section.start}", words))
+            if section.start <= here and section.level == 2:
+                at = f"block:{section.start}"
+            for index, block in enumerate(script.blocks):
+                if isinstance(block, Task) and script.section_at(index) == section:
+                    mark = "✓" if page.practice.of(block.id).done else " "
+                    words = f"{mark}   {block.what.partition(',')[0]}: {block.title}"
+                    options.append((f"block:{index}", words))
+        options.append(("", ""))
+        for number, name in enumerate(page.catalog.lesson_ids(), start=1):
+            words = f"{'✓' if page.is_read(name) else ' '} {number}. {page.catalog.lesson(name).title}"
+            options.append((f"lesson:{name}", words))
+        self.push_screen(Choice(script.lesson.title, options, at), self._chosen)
 
     def _chosen(self, key: str | None) -> None:
         """Go where a list says: "block:12", "lesson:ID" or "lesson:ID:12"."""
         if not key:
             return
-        kind, _, rest = key.partition(":")
-        name, _, block = rest.partition(":")
+        kind, name, block = f"{key}::".split(":")[:3]
         self.page.leave_trail()
         if kind == "lesson":
             self.page.open(name, Place(int(block)) if block else None)
         else:
-            self.page.show(self.page.book.layout.row(Place(int(rest))))
+            self.page.show(self.page.book.layout.row(Place(int(name))))
 
     def action_search(self) -> None:
         self.push_screen(Find(self._search), self._chosen)
@@ -297,31 +306,3 @@ class ReaderApp(FullScreenApp):
 
     def action_help(self) -> None:
         self.push_screen(TextOverlay("Keys", [keys_table(self.size.width)]))
-
-
-def _contents(page: Page) -> tuple[list[tuple[str, str]], str]:
-    """The sections of a lesson with its tasks, and all lessons, with what is done.
-
-    Returns:
-        (key, what to show) of each, and the key of where the reader is.
-    """
-    progress, script, options, at = page.progress, page.progress.script, list[tuple[str, str]](), ""
-    here = (page.place() or Place()).block
-    for section in script.sections:
-        done = progress.is_done(section.start, section.end)
-        asked = [q for q in script.questions if section.start <= q.index < section.end]
-        open_ = sum(progress.prediction(q) is None for q in asked)
-        more = f"   {open_} to predict" if open_ and section.level == 2 else ""
-        indent = "  " * (section.level - 2)
-        options.append((f"block:{section.start}", f"{'✓' if done else ' '} {indent}{section.title}{more}"))
-        if section.start <= here and section.level == 2:
-            at = f"block:{section.start}"
-        for index, block in enumerate(script.blocks):
-            if isinstance(block, Task) and script.section_at(index) == section:
-                mark = "✓" if page.practice.of(block.id).done else " "
-                options.append((f"block:{index}", f"{mark}   {block.what.partition(',')[0]}: {block.title}"))
-    options.append(("", ""))
-    for number, name in enumerate(page.catalog.lesson_ids(), start=1):
-        words = f"{'✓' if page.is_read(name) else ' '} {number}. {page.catalog.lesson(name).title}"
-        options.append((f"lesson:{name}", words))
-    return options, at

@@ -12,7 +12,7 @@ from course.browser import opened
 from course.catalog import blocks as b
 from course.cli.reading.screen.asking import Edit, Predict
 from course.cli.reading.screen.page import KEYS, Item, Page
-from course.cli.reading.screen.printing import answered, hint_is_named, line_to_mend
+from course.cli.reading.screen.printing import hint_is_named, line_to_mend
 from course.cli.reading.screen.running import write_cell
 from course.errors import CourseError
 from course.reading.parts import Cell, Question
@@ -97,9 +97,8 @@ class AnswerItem(Item):
     hint = "were you 1 right, 2 nearly, 3 wrong   Space on"
 
     def is_offered(self, page: Page) -> bool:
-        question = page.progress.script.answered_at(self.block)
-        said = page.progress.prediction(question) if question else None
-        return said is not None and said.judged is None
+        answers = page.progress.answered_at(self.block)
+        return answers is not None and answers[1].judged is None
 
     def judge(self, page: Page, judged: Judgement) -> None:
         """How good the prediction was, in the reader's own judgement."""
@@ -332,4 +331,4 @@ def _kind_of(progress: InProgress, index: int) -> type[Item] | None:
         case b.Task():
             return TaskItem
         case _:
-            return AnswerItem if answered(progress, index) is not None else None
+            return AnswerItem if progress.answered_at(index) is not None else None

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.cells import cell_len, set_cell_size
@@ -389,10 +390,8 @@ class Page(Widget):
             return
         count = len(self.progress.script.blocks)
         last = self.book.layout.rows[self.end() - 1].block if self.end() else -1
-        self.progress.at(
-            Place(min(place.block, count - 1), place.part if place.block < count else 1.0),
-            min(last, count - 1),
-        )
+        kept = place if place.block < count else Place(count - 1, 1.0)
+        self.progress.at(kept, min(last, count - 1))
 
     def bring_to_sight(self, block: int) -> None:
         """Show the end of a block, where its output is, unless the reader has moved on."""
@@ -410,12 +409,7 @@ class Page(Widget):
     def at_bench(self) -> Bench:
         """Where this lesson's cells run."""
         if self.bench is None:
-            progress = self.progress
-
-            def done(cell: Cell, source: str, gave: CellOutput) -> None:
-                self.from_thread(self._took, progress, cell, source, gave)
-
-            self.bench = Bench(progress, done)
+            self.bench = Bench(self.progress, partial(self.from_thread, self._took, self.progress))
         return self.bench
 
     def end_cells(self) -> None:
@@ -460,11 +454,6 @@ class Page(Widget):
     @property
     def _lead(self) -> int:
         return 0 if self.app.size.height < _LOW else 1
-
-    @property
-    def _left(self) -> int:
-        """Columns before the text: it stands in the middle of a wide window."""
-        return max(_MARGIN, (self.size.width - _WIDEST) // 2)
 
     def end(self) -> int:
         """The row after the last one on the screen."""
@@ -512,22 +501,18 @@ class Page(Widget):
         room = self._width - 2
         self._told = self.reader.message
         self._head = shortened(head, room)
-        self._keys = (
-            shortened(self._told, room) if self._told else fitting(self._keys_of(self), room, more=_ALL_KEYS)
-        )
-        self._position = self._where(book) if book.whole else ""
-        self._share = self.end() / max(1, len(book.layout)) if book.whole else 0.0
+        keys = fitting(self._keys_of(self), room, more=_ALL_KEYS)
+        self._keys = shortened(self._told, room) if self._told else keys
+        self._position, self._share = "", 0.0
+        if book.whole:  # which screen of how many, and the minutes left
+            layout, end = book.layout, self.end()
+            self._share = end / max(1, len(layout))
+            minutes = max(1, round(script.minutes_left((layout.rows[end - 1].block if end else 0) + 1)))
+            number, left = layout.number(self.top), f"{minutes} min left"
+            if end >= len(layout):
+                number, left = len(layout.starts), "the end"
+            self._position = f"{number} of {len(layout.starts)} · {left}"
         self.refresh()
-
-    def _where(self, book: Book) -> str:
-        """Which screen of how many, and the minutes left."""
-        layout, end = book.layout, self.end()
-        last = layout.rows[end - 1].block if end else 0
-        at_end = end >= len(layout)
-        minutes = max(1, round(self.progress.script.minutes_left(last + 1)))
-        left = "the end" if at_end else f"{minutes} min left"
-        number = len(layout.starts) if at_end else layout.number(self.top)
-        return f"{number} of {len(layout.starts)} · {left}"
 
     def tick(self) -> None:
         """From time to time: a message goes, a cell runs on, a task was saved in an editor."""
@@ -553,9 +538,11 @@ class Page(Widget):
             return Strip.blank(width)
         item, block = self.item, self.book.layout.rows[row].block
         at_hand = item is not None and not item.inline and row == max(item.row, self.top)
-        pieces = [Segment(" " * (self._left - 2) + ("▸ " if at_hand else "  "), _HERE)]
+        left = max(_MARGIN, (width - _WIDEST) // 2)  # the text stands in the middle of a wide window
+        pieces = [Segment(" " * (left - 2) + ("▸ " if at_hand else "  "), _HERE)]
         for text, style, _ in self.book.lines[row]:
-            chosen = item is not None and item.inline and item.block == block and _link(style) == item.number
+            link = style.meta.get("link", 0) if style is not None else 0
+            chosen = item is not None and item.inline and item.block == block and link == item.number
             pieces.append(Segment(text, (style or Style()) + _LINK_HERE if chosen else style))
         return Strip(pieces).adjust_cell_length(width)
 
@@ -567,11 +554,6 @@ class Page(Widget):
         done = round(room * self._share)
         bars = [Segment("━" * done, _HERE), Segment("─" * (room - done), _DIM)]
         return Strip([Segment("  "), *bars, Segment(text + " ", _DIM)]).adjust_cell_length(width)
-
-
-def _link(style: Style | None) -> int:
-    """The number of the link that a piece of a line belongs to; 0 for none."""
-    return int(style.meta.get("link", 0)) if style is not None else 0
 
 
 def _bar(text: str, width: int) -> Strip:

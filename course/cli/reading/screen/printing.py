@@ -23,7 +23,7 @@ from course.cli.reading.lesson import KEEP, FancyPrinter
 from course.cli.reading.screen.running import Practice, Standing
 from course.cli.work.verdict import line_of, unread_line
 from course.reading.parts import Cell, Question
-from course.reading.record import InProgress, Row
+from course.reading.record import InProgress, Prediction, Row
 from course.scoring.verdict import CheckResult, numbers_of
 
 #: Prose is this wide at most; a cell's two outputs stand side by side where both fit.
@@ -87,13 +87,9 @@ class ScreenPrinter(FancyPrinter):
         )
         self._width = max(20, width - 2)
         super().__init__(catalog, progress.script, console, None, min(self._width, COLUMN))
-        self._progress = progress
-        self._script = progress.script
-        self._practice = practice
-        self._busy = busy
-        self._picture = picture
-        self._index = -1
-        self._links = 0
+        self._progress, self._script, self._practice = progress, progress.script, practice
+        self._busy, self._picture = busy, picture
+        self._index, self._links = -1, 0
 
     @property
     def wide(self) -> bool:
@@ -124,9 +120,8 @@ class ScreenPrinter(FancyPrinter):
         lesson, ids = self._lesson, self._catalog.lesson_ids()
         following = ids[ids.index(lesson.id) + 1 :][:1] if lesson.id in ids else ()
         links = [(f"exercise:{name}", f"Practise: {name}") for name in lesson.exercises]
-        links += [
-            (f"lesson:{name}", f"Next lesson: {self._catalog.lesson(name).title}") for name in following
-        ]
+        titles = ((name, self._catalog.lesson(name).title) for name in following)
+        links += [(f"lesson:{name}", f"Next lesson: {title}") for name, title in titles]
         shown = [Text("─" * 20, style="dim"), Text("You have read this lesson.", style="bold")]
         count = sum(self._progress.prediction(one) is None for one in self._script.questions)
         if count:
@@ -184,9 +179,7 @@ class ScreenPrinter(FancyPrinter):
             return None if block.hidden else self._code(block)
         if not self._script.gives_away(index):
             return self._block(block)
-        if index == question.end - 1:
-            return _CLOSED
-        return None
+        return _CLOSED if index == question.end - 1 else None
 
     def _block(self, block: b.Block) -> RenderableType | None:
         return self._task(block) if isinstance(block, b.Task) else super()._block(block)
@@ -200,16 +193,13 @@ class ScreenPrinter(FancyPrinter):
             made = self._block(block)
             shown += [Text(""), made] if made is not None else []
         standing = _standing_lines(now, task.id, possible=self._practice.possible)
+        shown.append(Text(""))
+        if not now.busy and (curves := (now.reply or {}).get("curves")):
+            # The first curve of the last check, drawn where there are pictures, and in words.
+            words = Text(curves[0]["description"], style="dim")
+            shown += [*self._picture(task.id, curves[0], self._prose), words, Text("")]
         # The finding comes last: it is what must be in sight.
-        return Group(*shown, Text(""), *self._curve_lines(now, task.id), *standing, self._rule(""))
-
-    def _curve_lines(self, now: Standing, task: str) -> list[Text]:
-        """The first curve of the last check, drawn where there are pictures, and in words."""
-        curves = (now.reply or {}).get("curves") or ()
-        if not curves or now.busy:
-            return []
-        words = Text(curves[0]["description"], style="dim")
-        return [*self._picture(task, curves[0], self._prose), words, Text("")]
+        return Group(*shown, *standing, self._rule(""))
 
     def _passage(self, kind: str, inner: tuple[b.Block, ...]) -> RenderableType:
         if kind == "predict":
@@ -217,8 +207,8 @@ class ScreenPrinter(FancyPrinter):
             if question is not None:
                 return self._asked(question, inner)
         shown = super()._passage(kind, inner)
-        question = answered(self._progress, self._index) if kind == "answer" else None
-        return Group(self._compared(question), Text(""), shown) if question is not None else shown
+        answers = self._progress.answered_at(self._index) if kind == "answer" else None
+        return Group(self._compared(*answers), Text(""), shown) if answers is not None else shown
 
     def _asked(self, question: Question, inner: tuple[b.Block, ...]) -> RenderableType:
         shown = super()._passage("predict", inner)
@@ -235,21 +225,19 @@ class ScreenPrinter(FancyPrinter):
                 line.append("\nYou will see below whether you were right.", style="dim")
         return Group(shown, Text(""), line)
 
-    def _compared(self, question: Question) -> RenderableType:
-        said = self._progress.prediction(question)
-        assert said is not None
+    def _compared(self, question: Question, said: Prediction) -> RenderableType:
         facts = [("You said", said.text)]
         for cell in self._script.shown_cells:
             if question.index < cell.index < question.end:
                 state = self._progress.cell(cell)
                 ours = state.printed if state.ran is not None and not state.error else ""
-                gave = (ours or cell.output or "").strip("\n")
+                gave = (ours or cell.output or "").strip("\n").splitlines()
+                if len(gave) > _MOST:  # any of the last lines may hold the answer
+                    gave = ["…", *gave[1 - _MOST :]]
                 if gave:
-                    facts.append(("Your run" if ours else "The run", _end_of(gave)))
-        if said.judged:
-            facts.append(("You were", _JUDGED[said.judged]))
-        else:
-            facts.append(("Were you right?", "1 right   2 nearly   3 wrong"))
+                    facts.append(("Your run" if ours else "The run", "\n".join(gave)))
+        judged = ("You were", _JUDGED[said.judged]) if said.judged else None
+        facts.append(judged or ("Were you right?", "1 right   2 nearly   3 wrong"))
         grid = Table.grid(padding=(0, 2, 0, 0))
         grid.add_column(no_wrap=True)
         grid.add_column(overflow="fold", ratio=1)
@@ -280,7 +268,7 @@ class ScreenPrinter(FancyPrinter):
         if not state.error and state.printed == recorded and state.ran == cell.source:
             label = f"ran here in {took}: prints the same" if recorded else f"ran here in {took}"
             return [self._rule(label), *([Text(recorded)] if recorded else [])]
-        stale = ", before the last change" if state.edited else ""
+        stale = ", before the last change" if state.ran != state.source else ""
         body = [Text(state.printed)] if state.printed else []
         if state.error:
             body.append(Text(state.error, style="red"))
@@ -314,19 +302,6 @@ class ScreenPrinter(FancyPrinter):
         text.stylize(Style(underline=True))
         text.stylize(Style(meta={"link": self._links, "target": target}))
         return text
-
-
-def answered(progress: InProgress, index: int) -> Question | None:
-    """The prediction that a block answers, if the reader said something."""
-    question = progress.script.answered_at(index)
-    said = progress.prediction(question) if question is not None else None
-    return question if said is not None and not said.skipped else None
-
-
-def _end_of(text: str) -> str:
-    """A cell's output, or its last lines where there are many: any of them may hold the answer."""
-    lines = text.splitlines()
-    return "\n".join(lines if len(lines) <= _MOST else ["…", *lines[1 - _MOST :]])
 
 
 # ---

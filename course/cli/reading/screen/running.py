@@ -93,8 +93,8 @@ class Bench:
             self._pool = None
 
     def _end(self) -> None:
-        if self._runner is not None:
-            with contextlib.suppress(IsolationError):  # it ended by itself
+        with contextlib.suppress(IsolationError):  # it ended by itself
+            if self._runner is not None:
                 self._runner.close()
 
     def _submit(self, what: Callable[..., None], *arguments: object) -> None:
@@ -147,11 +147,9 @@ def write_cell(progress: InProgress, cell: Cell) -> Path:
                 file.write(progress.cell(cell).source + "\n")
                 break
         except OSError as error:
-            raise MissingCapabilityError(
-                f"{path} cannot be written ({error.strerror or error}).",
-                help="Change to a folder that can be written.",
-                code="not_writable",
-            ) from error
+            problem = f"{path} cannot be written ({error.strerror or error})."
+            fix = "Change to a folder that can be written."
+            raise MissingCapabilityError(problem, help=fix, code="not_writable") from error
     return path
 
 
@@ -305,7 +303,11 @@ class Practice:
             hint = reply.get("hint")
             now = replace(now, hint=f"Hint: {hint}" if hint else str(reply.get("message", "")))
         else:
-            fixed = () if "error" in reply else self._fixed(name)
+            fixed: tuple[str, ...] = ()
+            with contextlib.suppress(CourseError):  # the functions that the last edit fixed, by the record
+                if self._workspace is not None and "error" not in reply:
+                    history = history_of(self._workspace.store.events(subject=name))
+                    fixed = tuple(sorted(history.changed_tasks()[0]))
             now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")), fixed=fixed)
         self._standings[name] = now
         if not self._closed:
@@ -325,29 +327,17 @@ class Practice:
                 reply: dict[str, Any] = msgspec.json.decode(said)
             except (subprocess.TimeoutExpired, msgspec.DecodeError):
                 self._process.kill()
-                problem = {"message": f"`course {command} {name}` gave no answer.", "help": ""}
-                reply = {"error": problem}
+                reply = {"error": {"message": f"`course {command} {name}` gave no answer.", "help": ""}}
         self._process = None
         return reply
-
-    def _fixed(self, name: str) -> tuple[str, ...]:
-        """The functions that the last edit fixed, by the record."""
-        assert self._workspace is not None
-        try:
-            return tuple(sorted(history_of(self._workspace.store.events(subject=name)).changed_tasks()[0]))
-        except CourseError:
-            return ()
 
     def _recorded(self, name: str) -> Standing:
         if self._workspace is None:
             return Standing()
-        exercise = self._catalog.exercise(name)
-        try:
-            events = self._workspace.store.events("check", name)
-        except CourseError:
-            events = ()
+        exercise, done = self._catalog.exercise(name), False
+        with contextlib.suppress(CourseError):
+            done = history_of(self._workspace.store.events("check", name)).done is not None
         there = self._path(exercise).is_file()
-        done = any(event.data.get("all_pass") and not event.data.get("only") for event in events)
         return Standing(file=f"{exercise.place}/{exercise.module}" if there else "", done=done)
 
     def _path(self, exercise: Exercise) -> Path:
@@ -356,10 +346,9 @@ class Practice:
 
     def _stamp(self, exercise: Exercise) -> int:
         """When the file was last saved; 0 where it is gone."""
-        try:
+        with contextlib.suppress(OSError):
             return self._path(exercise).stat().st_mtime_ns
-        except OSError:
-            return 0
+        return 0
 
 
 # ---
@@ -428,19 +417,14 @@ class Drawer:
                 self._folder = tempfile.TemporaryDirectory(prefix="course-figures-")
             path = Path(self._folder.name) / f"{figure}.png"
             path.write_bytes(base64.b64decode(answer["png"]))
-            if opened(path.as_uri()):
-                say(f"Opened {figure}.png")
-            else:
-                say(f"No viewer here; until you leave, the figure is {path}")
+            shown = opened(path.as_uri())
+            say(f"Opened {figure}.png" if shown else f"No viewer here; until you leave, the figure is {path}")
 
         self._ask({"figure": figure, "png": True}, take)
 
     def close(self) -> None:
         if self._process is not None:
-            with (
-                contextlib.suppress(OSError),
-                self._process,
-            ):  # then its streams are closed, and it is waited for
+            with contextlib.suppress(OSError), self._process:  # which closes its streams and waits for it
                 self._process.kill()
             self._process = None
         if self._folder is not None:

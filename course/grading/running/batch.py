@@ -114,11 +114,14 @@ class WarmGrader:
         for _ in range(MAX_TRIES):
             if self._over:
                 break
-            process = self._process = start_grader(self.config)
+            process = self._process = self._start()
             if self._said(process) is not None:
                 return process
             self.close()
         raise InternalError("A grader process cannot start; what it printed is above.")
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        return start_grader(self.config)
 
     def _said(self, process: subprocess.Popen[bytes], job: Job | None = None) -> bytes | None:
         """What a process says to a job, or first of all; None once it is dead.

@@ -92,11 +92,7 @@ class Servant:
         self._process: subprocess.Popen[bytes] | None = None
 
     def ask(self, question: Any, most: int | None = None) -> bytes | None:
-        """Its answer; None if it died over the question, took too long, or says more than ``most`` bytes.
-
-        Raises:
-            InternalError: it does not start.
-        """
+        """Its answer; None if it died over the question, took too long, or says more than ``most`` bytes."""
         process = self._process or self._start()
         assert process.stdin is not None
         assert process.stdout is not None

@@ -47,12 +47,7 @@ _Records = Annotated[tuple[_Record, ...], msgspec.Meta(max_length=MAX_RECORDS)]
 
 @dataclass(frozen=True, slots=True)
 class QuizScore:
-    """The attempt that counts.
-
-    Attributes:
-        attempts: how many were handed in.
-        repeated: how many of them did not count because an earlier one had the same seed.
-    """
+    """The attempt that counts, how many were handed in, and how many of these had an earlier one's seed."""
 
     result: Result
     seed: int

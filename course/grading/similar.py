@@ -62,12 +62,8 @@ _DOCUMENTED = (ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
 class Prints(msgspec.Struct, frozen=True):
-    """Fingerprints of one source.
-
-    Attributes:
-        marks: hash -> the lines it was seen on, as (first, last) pairs, 1 first.
-        whole: digest of the whole sequence of nodes; equal for sources that differ in names and layout only.
-    """
+    """Fingerprints of one source: by hash, the lines it was seen on, as (first, last) pairs from 1 on; and a
+    digest of all nodes, which is equal for sources that differ in names and layout only."""
 
     marks: dict[int, tuple[tuple[int, int], ...]]
     whole: str
@@ -194,12 +190,7 @@ MAX_PAIRS = 200
 
 @dataclass(frozen=True)
 class Document:
-    """One source that is compared.
-
-    Attributes:
-        label: the student, or the name of the course's own file.
-        own: the course's own code: compared with, but never reported as a copy.
-    """
+    """One source that is compared. The course's own code is compared with, but never reported as a copy."""
 
     label: str
     source: str
@@ -227,12 +218,8 @@ class Pair:
 
 @dataclass(frozen=True)
 class Group:
-    """Three or more submissions of one exercise that similar pairs link.
-
-    Attributes:
-        members: the students, by name; each is in a pair with another, not with all.
-        share: of the weakest pair among them.
-    """
+    """Three or more submissions of one exercise that similar pairs link, each with another, not with all;
+    ``share`` is that of the weakest pair."""
 
     exercise: str
     members: tuple[str, ...]

@@ -77,11 +77,8 @@ class CodeCell:
 
 
 def code_cells(data: bytes, name: str) -> list[CodeCell]:
-    """The code cells of a notebook, in its order.
-
-    Raises:
-        UngradableError: it is not a notebook, or one of another language.
-    """
+    """The code cells of a notebook, in its order; UngradableError if it is none, or one of another
+    language."""
     if len(data) > MAX_NOTEBOOK:
         raise UngradableError(
             f"{name} is larger than {MAX_NOTEBOOK >> 20} MB.",

@@ -103,11 +103,8 @@ def opened(files: Mapping[str, bytes], exercise: Exercise) -> Submission:
 
 
 def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook") -> NotebookSource:
-    """The module of a notebook.
-
-    Raises:
-        UngradableError: it is not a notebook, is one of another language, or has none of the functions.
-    """
+    """The module of a notebook; UngradableError if it is none, is of another language, or has none of the
+    functions."""
     try:
         return source_of(code_cells(data, name), exercise, name)
     except RecursionError:
@@ -121,11 +118,8 @@ def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook")
 def source_of(
     cells: list[CodeCell], exercise: Exercise, name: str, called: Mapping[int, str] | None = None
 ) -> NotebookSource:
-    """The module that cells stand for, however they came to be known; see ``notebook_source``.
-
-    Args:
-        called: names of cells by their numbers, for those that are not called "cell 7".
-    """
+    """The module that cells stand for, however they came to be known and are ``called``; see
+    ``notebook_source``."""
     functions = {task.id for task in exercise.task}
     chosen = [cell for cell in cells if _counts(cell, exercise.id, functions)]
     if not chosen:

@@ -43,13 +43,8 @@ _MOST = 1 << 16  # bytes; an answer has some hundreds
 
 
 def where_it_hangs(handle: Handle, begun: bytes, main: str, source: bytes) -> StudentFailure | None:
-    """The timeout with the line it hangs at; None if the worker does not say, or cannot be asked.
-
-    Args:
-        handle: the worker, which is to be ended afterwards.
-        begun: what came from it and was not read yet.
-        main: name of the submission's file.
-    """
+    """The timeout with the line it hangs at; None if the worker does not say, or cannot be asked. It is to
+    be ended afterwards; ``begun`` came from it and was not read yet."""
     if wire.LOOK is None:
         return None
     for _ in range(wire.LOOKS):
@@ -283,11 +278,8 @@ class Connection:
     # -- calls ----------------------------------------------------------------------------------------
 
     def call(self, function: str | RemoteFunction, *args: Any, **kwargs: Any) -> Any:
-        """The result of ``function``, as plain values (tuples as lists).
-
-        Raises:
-            StudentFailure: it raised, ran out of time, died, or returned what cannot cross.
-        """
+        """The result of ``function``, as plain values (tuples as lists); a StudentFailure where it gave
+        none."""
         return self._ask(Kind.CALL, [function, list(args), kwargs, False], function)
 
     def inspect(self, function: str, *args: Any) -> tuple[Any, list[Any], bool]:
@@ -299,19 +291,13 @@ class Connection:
         raise self._breach("an inspection in another form")
 
     def march(self, step: str, marches: list[list[Any]]) -> list[Any]:
-        """Positions and velocities of each march, or the worker's report why a step was unusable.
-
-        Args:
-            marches: [right-hand side, q0, v0, t0, h, n] each.
-        """
+        """Positions and velocities of each march [right-hand side, q0, v0, t0, h, n], or why a step was
+        unusable."""
         return self._batch(self._ask(Kind.MARCH, [step, marches], step), len(marches))
 
     def each(self, function: str, calls: list[list[Any]]) -> tuple[list[Any], bool]:
-        """The results of ``function`` for each list of arguments; the loop runs in the student's process.
-
-        Returns:
-            The values, and whether a later call changed one of them.
-        """
+        """The results of ``function`` for each list of arguments, and whether a later call changed one of
+        them; the loop runs in the student's process."""
         values, changed = self._batch(self._ask(Kind.EACH, [function, calls], function), 2)
         return self._batch(values, len(calls)), changed is not None
 

@@ -264,11 +264,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """Everything a report shows.
-
-    Attributes:
-        streams: recorded sensor streams by kind, for a ROS 2 bag.
-    """
+    """Everything a report shows; ``streams`` are recorded sensor streams by kind, for a ROS 2 bag."""
 
     title: str
     sections: tuple[Section, ...]

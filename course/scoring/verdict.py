@@ -142,11 +142,7 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def not_graded(exercise: str, most: float, state: str, error: Problem) -> Verdict:
-    """The verdict on work that no check judged.
-
-    Args:
-        most: points of the exercise.
-    """
+    """The verdict on work that no check judged, of an exercise with so many points."""
     return Verdict(
         exercise=exercise, scope="full", state=state, score=0.0, max_score=most, passed=False, checks=(),
         isolation="", error=error,

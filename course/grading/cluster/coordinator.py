@@ -43,11 +43,7 @@ _PATIENCE_S = 600.0
 
 @dataclass(frozen=True)
 class LostBatch:
-    """A batch that did not come back, because its worker died.
-
-    Attributes:
-        deaths: how many workers in a row died with this batch.
-    """
+    """A batch that did not come back: so many workers in a row died with it."""
 
     deaths: int = 1
 

@@ -45,12 +45,8 @@ FORMAT = 4
 
 
 class Batch(msgspec.Struct, frozen=True):
-    """Submissions for one worker, and how to grade them.
-
-    Attributes:
-        format: the sender's ``FORMAT``.
-        graders: the snapshot that ``terms`` names, packed; empty until the worker asked for it.
-    """
+    """Submissions for one worker, and how to grade them. ``graders`` is the snapshot that ``terms`` names,
+    packed; empty until the worker asked for it."""
 
     format: int
     terms: Terms

@@ -59,11 +59,8 @@ def number(value: float | None) -> str:
 
 
 def csv_bytes(headings: Sequence[str], rows: Iterable[Sequence[str]], *, mark: bool = True) -> bytes:
-    """A table with every cell quoted and safe.
-
-    Args:
-        mark: put a byte order mark in front, which makes Excel read UTF-8; not every program knows it.
-    """
+    """A table with every cell quoted and safe. The byte order mark makes Excel read UTF-8; not every program
+    knows it."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
     writer.writerow([safe_cell(cell) for cell in headings])

@@ -198,11 +198,8 @@ def _has_moodle_key(person: Person) -> bool:
 
 
 def _table(selection: Selection, scales: Mapping[str, float] | None = None) -> dict[str, list[str]]:
-    """Scores by student, in the order of the exercises; empty where there is none.
-
-    Args:
-        scales: what a point of an exercise is worth on the platform; 1 if None.
-    """
+    """Scores by student, in the order of the exercises; empty where there is none. ``scales`` says what a
+    point of an exercise is worth on the platform."""
     table: dict[str, list[str]] = {}
     columns = {name: column for column, name in enumerate(selection.exercises)}
     for effective in selection.each():
@@ -233,11 +230,7 @@ _MODIFIED, _FEEDBACK, _OPEN = "Last modified (grade)", "Feedback comments", "Gra
 
 
 def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Written:
-    """The worksheet with the grades of one exercise.
-
-    Raises:
-        UsageError: there is no worksheet, the file is not one, or there are several exercises.
-    """
+    """The worksheet with the grades of one exercise; a UsageError if there is none, or not one exercise."""
     if options.worksheet is None:
         raise UsageError(
             "There is no worksheet to fill in.",

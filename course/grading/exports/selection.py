@@ -45,12 +45,8 @@ class ExportOptions:
 
 @dataclass(frozen=True)
 class Needs:
-    """The key by which a platform finds a student.
-
-    Attributes:
-        columns: of our own roster, one of which has to have it.
-        give: where to get the key, as the beginning of a sentence.
-    """
+    """The key by which a platform finds a student: the columns of our own roster, one of which has to have
+    it, and where to get it."""
 
     columns: tuple[str, ...]
     platform: str
@@ -84,12 +80,8 @@ class Written:
 
 @dataclass
 class Selection:
-    """The results of an export.
-
-    Attributes:
-        people: student -> row of the roster; empty without one.
-        zeros: work that was not handed in counts as 0.
-    """
+    """The results of an export; ``people`` has the rows of the roster by student, ``zeros`` makes what was
+    not handed in count as 0."""
 
     results: Results
     exercises: tuple[str, ...]
@@ -213,11 +205,7 @@ def begins(path: Path, mark: bytes) -> bool:
 
 
 def refuse_to_replace(folder: Path, files: Iterable[Path], made: str) -> None:
-    """Refuse to replace files in a folder which no export to ``made`` wrote.
-
-    Raises:
-        UsageError: one of them is there.
-    """
+    """Refuse to replace files in a folder which no export to ``made`` wrote."""
     if names := [one_line(str(file.relative_to(folder))) for file in sorted(files) if file.exists()]:
         raise UsageError(
             f"{folder} has {some(names, 3)}, and no export to {made} made it. Nothing was written.",

@@ -282,11 +282,7 @@ class Gradebook:
         yield from self._results(f" WHERE {newest}", arguments)
 
     def verify(self) -> None:
-        """Look at every page, every decision, and all that opening leaves unread because it is large.
-
-        Raises:
-            IntegrityError: the file is damaged.
-        """
+        """Look at every page, every decision, and all that opening leaves unread because it is large."""
         with explained(self.path):
             told = self._db.execute("PRAGMA quick_check(1)").fetchone()[0]
             if told != "ok":
@@ -349,11 +345,7 @@ class Gradebook:
     # -- what an instructor decided -------------------------------------------------------------------
 
     def add_override(self, override: Override, before: str = "") -> None:
-        """Store a decision, here and in the journal; earlier ones are kept.
-
-        Args:
-            before: what counted before, for the journal.
-        """
+        """Store a decision, here and in the journal, with what counted before; earlier ones are kept."""
         at = override.at or _now()
         row = (override.student, override.exercise, override.score, override.reason, at)
         with self._transaction():
@@ -396,11 +388,7 @@ class Gradebook:
             return [_as(Decision, row) for row in rows]
 
     def set_waiting(self, students: Iterable[str], *, others: bool) -> None:
-        """Note whose work a run has still to look at.
-
-        Args:
-            others: those who waited before go on waiting.
-        """
+        """Note whose work a run has still to look at; with ``others``, beside those who waited before."""
         with self._transaction():
             if not others:
                 self._db.execute("DELETE FROM waiting")

@@ -236,11 +236,8 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
 
 
 def create(path: Path) -> None:
-    """An empty gradebook, made under another name first: a run killed here leaves none, not half of one.
-
-    Raises:
-        UsageError: another run made one meanwhile.
-    """
+    """An empty gradebook, made under another name first: a run killed here leaves none, not half of one. It
+    is a UsageError if another run made one meanwhile."""
     draft = _draft(path)
     try:
         with explained(path), contextlib.closing(sqlite3.connect(draft)) as db:

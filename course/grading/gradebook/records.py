@@ -46,13 +46,8 @@ class GradedExercise(msgspec.Struct, frozen=True):
 
 
 class PlatformIdentity(msgspec.Struct, frozen=True):
-    """A student's identity in the system a class was downloaded from.
-
-    Attributes:
-        source: "canvas", "moodle" or "gradescope".
-        key: the student's number there.
-        name: as that system spells it.
-    """
+    """A student's identity in the system a class was downloaded from ("canvas", "moodle" or "gradescope"):
+    the number there, and the name as that system spells it."""
 
     source: str
     key: str
@@ -78,12 +73,8 @@ class SubmittedAt(msgspec.Struct, frozen=True):
 
 
 class Looked(msgspec.Struct, frozen=True):
-    """Whose work was looked at for an exercise.
-
-    Attributes:
-        whole: the class, but for ``names``; otherwise these alone.
-        named: it was asked for by name, so that it can be missing whoever handed it in.
-    """
+    """Whose work was looked at for an exercise: the class without ``names``, or these alone. One that was
+    asked for by name can be missing whoever handed it in."""
 
     whole: bool = False
     named: bool = False

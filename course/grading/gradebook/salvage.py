@@ -59,11 +59,7 @@ class _DamagedError(Exception):
 
 
 def raw_rows(data: bytes) -> Iterator[tuple[int | None, tuple[Cell, ...]]]:
-    """Everything that can be read as a row, with its number if it has one.
-
-    Args:
-        data: a whole file.
-    """
+    """Everything in a whole file that can be read as a row, with its number if it has one."""
     size, reserved = _sizes(data)
     pages = _Pages(data, size, size - reserved)
     for number in range(len(data) // size):
@@ -230,13 +226,8 @@ _NUMBERED = {"runs", "overrides", "results", "journal"}
 
 @dataclass
 class Salvaged:
-    """The recovered rows, and the losses.
-
-    Attributes:
-        rows: number of rows by table.
-        from_backup: of these, those only a backup had.
-        lost: known losses, a sentence each.
-    """
+    """The recovered rows by table, how many of these only a backup had, and the known losses, a sentence
+    each."""
 
     rows: Counter[str] = field(default_factory=Counter)
     from_backup: Counter[str] = field(default_factory=Counter)

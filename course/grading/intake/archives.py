@@ -113,11 +113,7 @@ class ArchiveContent(msgspec.Struct, frozen=True):
 
 
 def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
-    """A zip's module or notebook for an exercise; None if there is neither.
-
-    Raises:
-        RefusedError: also where it holds several.
-    """
+    """A zip's module or notebook for an exercise; None if there is neither. Several are refused."""
 
     held = _given(_held(path))
     wanted = _wanted_members(held.names, exercise)
@@ -457,20 +453,12 @@ class Reader:
         return told.content, told.record
 
     def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
-        """An archive's file for an exercise; None if it has none.
-
-        Raises:
-            RefusedError: it must not be opened, or is damaged.
-        """
+        """An archive's file for an exercise; None if it has none."""
         return self._ask(_about("archive", path, exercise=exercise)).found
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
-        """What a file is, and the functions that it defines, or each file in an archive.
-
-        Args:
-            skip: members of the archive to ignore.
-            functions: the names to look for.
-        """
+        """What a file is, and which of these functions it defines, or each file in an archive but those to
+        skip."""
         return self._ask(_about("outline", path, functions=functions, skip=skip)).outlines
 
     def member(self, path: Path, name: str) -> bytes:
@@ -478,11 +466,8 @@ class Reader:
         return self._ask(_about("member", path, skip=(name,))).content
 
     def quiz_in(self, path: Path, loose: bytes = b"") -> Any:
-        """The quiz attempts in an archive; words if they have another form, None if it has none.
-
-        Args:
-            loose: what ``path`` holds, where that is no archive.
-        """
+        """The quiz attempts in an archive, or in ``loose``, what a file that is none holds; words if they
+        have another form, None if it has none."""
         return json.loads(self._ask(_about("quiz", path, content=loose)).content)
 
     def _ask(self, ask: _Request) -> _Reply:

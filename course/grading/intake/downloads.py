@@ -98,20 +98,15 @@ _SHOWN = 5
 
 @dataclass(frozen=True)
 class Place:
-    """Where a student's files are: a folder of their own, or some of the files in a shared one.
-
-    Attributes:
-        files: name the student gave -> path, where the folder is shared; None for a folder of one's own.
-    """
+    """Where a student's files are: in a folder of their own, or, as ``files`` with the names the student
+    gave, in a shared one."""
 
     root: Path
     files: tuple[tuple[str, Path], ...] | None = None
 
     def find(self, wanted: str, inside: str) -> list[Path]:
-        """Files that a name may mean, at the top or in a subfolder; none is opened.
-
-        Those with exactly that name come first.
-        """
+        """Files that a name may mean, at the top or in a subfolder, those with exactly that name first; none
+        is opened."""
         if self.files is None:
             found = _entries(self.root)
             for name, path in [*found, *([(inside, self.root / inside)] if "/" in inside else [])]:
@@ -122,11 +117,8 @@ class Place:
         return [path for _, path in sorted(mine, key=lambda item: item[0])]
 
     def unwrapped(self, known: Collection[str]) -> "Place":
-        """The folder that has everything in it, as a workspace that was handed in whole; else this place.
-
-        Args:
-            known: folders that belong there.
-        """
+        """The folder that has everything in it, as a workspace that was handed in whole, and is none of those
+        known to belong there; else this place."""
         root = self.root
         for _ in range(_WRAPPED if self.files is None else 0):
             inside = [one for one in _entries(root) if not is_clutter(one[0])]
@@ -184,12 +176,7 @@ class Student:
 
 @dataclass
 class ClassList:
-    """A class.
-
-    Attributes:
-        students: ordered by name.
-        unrecognised: files with an unknown owner, one sentence each.
-    """
+    """A class: its students, ordered by name, and a sentence about each file with an unknown owner."""
 
     layout: str
     students: list[Student] = field(default_factory=list)

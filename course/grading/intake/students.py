@@ -325,13 +325,8 @@ def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str,
 
 @dataclass(frozen=True)
 class _FoundWork:
-    """The file that was found for an exercise by its name.
-
-    Attributes:
-        path: the file it came in.
-        used: paths, and members of archives, that hold it.
-        contents: digests of the files, unchanged.
-    """
+    """The file that was found for an exercise by its name: where it came in, all paths, and members of
+    archives, that hold it, and the digests of the files, unchanged."""
 
     submission: Submission
     path: Path
@@ -426,11 +421,7 @@ _TAKEN_AS = frozenset({"a notebook", "a zip archive"})
 
 
 def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submission:
-    """A file that an instructor named as a submission, whatever its name.
-
-    Args:
-        member: name in the archive at ``path``; empty for the file itself.
-    """
+    """A file that an instructor named as a submission, whatever its name, or a member of an archive."""
     content = reader.member(path, member) if member else _read_regular(path, quoted(path.name), MAX_NOTEBOOK)
     notebook = (member or path.name).casefold().endswith(".ipynb") or is_notebook(content)
     _within(content, quoted(path.name), MAX_NOTEBOOK if notebook else MAX_FILE)
@@ -570,12 +561,8 @@ class Candidate(msgspec.Struct, frozen=True):
 
 
 class Found(msgspec.Struct, frozen=True):
-    """The files of one student that may be meant for an exercise, but not by their names.
-
-    Attributes:
-        reason: the code of the problem.
-        times: who says when it was handed in, and when.
-    """
+    """The files of one student that may be meant for an exercise, but not by their names, the code of the
+    problem, and who says when they were handed in."""
 
     reason: str
     candidates: tuple[Candidate, ...]
@@ -583,12 +570,7 @@ class Found(msgspec.Struct, frozen=True):
 
 
 def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercise]) -> list[Candidate]:
-    """A student's files that no exercise was graded from.
-
-    Args:
-        used: path and member of the graded ones.
-        exercises: look for their functions.
-    """
+    """A student's files that no exercise was graded from, with those of the functions that they define."""
     functions = tuple(dict.fromkeys(task.id for exercise in exercises for task in exercise.task))
     candidates: list[Candidate] = []
     left = _CODE

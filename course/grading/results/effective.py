@@ -158,14 +158,7 @@ class Results:
 
     @classmethod
     def open(cls, out: Path) -> Self:
-        """The results in the folder of a grading run; close ``book`` when done.
-
-        Raises:
-            NotFoundError: there is no gradebook.
-            UsageError: a run is writing it.
-            MissingCapabilityError: a newer version wrote it.
-            IntegrityError: it is damaged.
-        """
+        """The results in the folder of a run, opened as a ``Gradebook`` is; close ``book`` when done."""
         return cls(Gradebook(out / "gradebook.sqlite"))
 
     def take_in(self, times: Iterable[SubmittedAt]) -> None:
@@ -210,11 +203,7 @@ class Results:
 
     def called(self, name: str) -> str:
         """The student who is called so: a name in the gradebook, or what the roster knows about one alone.
-
-        Anything else is given back as it is, for whoever asks to refuse.
-
-        Raises:
-            NotFoundError: several students are called so.
+        Several are refused (NotFoundError); anything else is given back as it is, for whoever asks to refuse.
         """
         students = self.students()
         if name in students:
@@ -240,11 +229,7 @@ class Results:
         return one_line(student) + (f" ({known})" if known else "")
 
     def verify(self) -> None:
-        """Read every row there is, so that a damaged gradebook answers nothing.
-
-        Raises:
-            IntegrityError: something is not what was written.
-        """
+        """Read every row there is, so that a damaged gradebook answers nothing but an IntegrityError."""
         self.book.verify()
         for _ in self.all():
             pass
@@ -439,11 +424,7 @@ def moved(before: Scores, after: Scores) -> list[ScoreChange]:
 
 @contextlib.contextmanager
 def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[list[ScoreChange]]:
-    """Record which scores the decision in this block changed; they are in the list after it.
-
-    Args:
-        kind: as in ``Decision``.
-    """
+    """Record which scores the decision in this block changed; they are in the list after it."""
     told: list[ScoreChange] = []
     before = counting(Results(book))
     yield told
@@ -468,11 +449,7 @@ def replacing(book: Gradebook, view: Results, key: Key) -> Iterator[None]:
 
 
 def counted(counts: Effective | None, file: str = "") -> str:
-    """What counts for a student's exercise, as a decision about it keeps it.
-
-    Args:
-        file: the file that the instructor chose, if any.
-    """
+    """What counts for a student's exercise, with the file that the instructor chose, as a decision has it."""
     if counts is None:
         return msgspec.json.encode({"state": "missing", "score": None}).decode()
     told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score, "of": counts.max_score}
@@ -528,11 +505,7 @@ def override(results: Results, student: str, exercise: str, score: float, reason
 
 
 def given_reason(reason: str, what: str, shown: str) -> str:
-    """An instructor's reason for a decision.
-
-    Raises:
-        UsageError: there is none, or it is too long.
-    """
+    """An instructor's reason for a decision; a UsageError if there is none, or it is too long."""
     reason = reason.strip()
     if not reason or len(reason) > _MAX_REASON:
         raise UsageError(
@@ -544,11 +517,7 @@ def given_reason(reason: str, what: str, shown: str) -> str:
 
 
 def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
-    """Let the graders' result count again; None if there is none.
-
-    Raises:
-        NotFoundError: there is no override to lift.
-    """
+    """Let the graders' result count again; None if there is none. NotFoundError if it counts already."""
     _maximum(results, student, exercise)
     found = next(results.all(student, exercise), None)
     if found is None or found.override is None:
@@ -589,11 +558,7 @@ def _only(students: Sequence[str], name: str) -> str:
 
 
 def must_have(results: Results, student: str) -> None:
-    """Refuse a name that is no student's.
-
-    Raises:
-        NotFoundError: the gradebook has no such student.
-    """
+    """Refuse a name that is no student's of the gradebook (NotFoundError)."""
     if student not in results.students():
         raise NotFoundError(
             f"The gradebook has no student {student!r}.",

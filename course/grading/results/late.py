@@ -129,12 +129,7 @@ def may_change(first: float, last: float) -> bool:
 
 
 def read_policy(path: Path) -> tuple[Policy, str]:
-    """A policy, and its text for the gradebook.
-
-    Raises:
-        UsageError: the file cannot be read, or is not a policy.
-        MissingCapabilityError: it is in a newer format.
-    """
+    """A policy, read as ``parse_policy`` does, and its text for the gradebook."""
     try:
         text = read_bytes(path).decode("utf-8-sig")
     except (OSError, UnicodeError) as error:
@@ -226,12 +221,8 @@ class Worksheet:
 
 
 def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
-    """Read such a list, or a worksheet of Moodle's.
-
-    Raises:
-        UsageError: it cannot be read, is not such a list, or has two times for the same work; the message
-            names the line.
-    """
+    """Such a list, or a worksheet of Moodle's; UsageError if it cannot be read, is neither, or has two times
+    for the same work."""
     try:
         text = decoded(read_bytes(path))
     except (OSError, UnicodeError) as error:

@@ -225,11 +225,7 @@ def _key(column: str, value: str) -> str:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a roster.
-
-    Raises:
-        UsageError: it cannot be read or is not a roster; the message names the row.
-    """
+    """Read a roster; a UsageError that names the row if it is none."""
     reader = csv_reader(read_text(path))
     try:
         headings = headings_of(reader)

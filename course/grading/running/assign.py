@@ -38,12 +38,7 @@ class Unsettled:
 
 @dataclass(frozen=True)
 class Assignment:
-    """A file to be assigned to a student.
-
-    Attributes:
-        name: of the file as it was handed in.
-        member: in the archive at ``path``; empty for the file itself.
-    """
+    """A file to be assigned to a student, by its name as it was handed in; or a member of an archive."""
 
     student: str
     exercise: str

@@ -116,11 +116,8 @@ def export_all(out: Path, results: Results) -> None:
 
 @contextlib.contextmanager
 def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
-    """The results in the folder of a grading run.
-
-    Args:
-        writing: lock the gradebook; at the end write the files beside it anew, and a backup.
-    """
+    """The results in the folder of a grading run. For writing, the gradebook is locked; at the end the files
+    beside it are written anew, and a backup."""
     with Gradebook(out / BOOK, writing=writing) as book:
         yield Results(book)
         if writing:
@@ -131,10 +128,8 @@ def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
 
 @contextlib.contextmanager
 def previewed(out: Path) -> Iterator[Results]:
-    """A run's results, on which to try a change: a copy of the gradebook, which is thrown away.
-
-    The preview makes the change on the copy, so it cannot differ from the real one.
-    """
+    """A run's results, on which to try a change: a copy of the gradebook, which is thrown away, so that the
+    preview cannot differ from the real one."""
     path = out / BOOK
     Gradebook(path).close()  # it is complete, no process is writing it, and it is one file now
     folder = private_folder()
@@ -166,11 +161,8 @@ def remember(book: Gradebook, new: Roster) -> Merged:
 def note_looked(
     book: Gradebook, exercises: Iterable[str], read: set[str], others: set[str], *, named: bool
 ) -> None:
-    """Note that a run looks for these exercises: in all of a class, or in a part of it.
-
-    Args:
-        others: students with a folder that this run leaves aside.
-    """
+    """Note that a run looks for these exercises: in all of a class, or without the others who have a folder
+    in it."""
     looked = book.looked()
     if looked is None:
         looked = {

@@ -35,11 +35,7 @@ _MOST_OPEN = 10
 
 
 class Config(msgspec.Struct, frozen=True):
-    """A grader's settings.
-
-    Attributes:
-        processor: number that picks the processor to stay on.
-    """
+    """A grader's settings; ``processor`` is a number that picks the one to stay on."""
 
     terms: Terms
     processor: int

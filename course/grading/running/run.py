@@ -580,13 +580,8 @@ def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...
 
 
 def _check_assignment(members: ClassList, book: Gradebook, out: Path) -> None:
-    """Refuse the download of a second assignment of Moodle's, which would double the class.
-
-    Moodle gives each student another number in each assignment, and folders are called after it.
-
-    Raises:
-        UsageError: students of the gradebook have other numbers in this download.
-    """
+    """Refuse the download of a second assignment of Moodle's, which would double the class: Moodle gives each
+    student another number in each, and folders are called after it."""
     known = {one.key: name for name, one in book.students().items() if one.source == "moodle"}
     called = {one.name: known[one.key] for one in book.students().values() if one.source == "moodle"}
     new = {who.name: one for who in members.students if (one := who.identity) and one.source == "moodle"}

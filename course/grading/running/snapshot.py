@@ -64,11 +64,7 @@ class Snapshot:
 
     @classmethod
     def take(cls, content: Content, exercises: Collection[str] | None = None) -> Snapshot:
-        """The graders as they are now.
-
-        Args:
-            exercises: ids, where no others and no quiz are to be graded; None for all.
-        """
+        """The graders as they are now, of all exercises and the quiz, or of some exercises alone."""
         buffer, paths = io.BytesIO(), dict(grader_files(content, exercises))
         files = {name: path.read_bytes() for name, path in paths.items()}
         files[f"content/{NAMES}"] = _names(content)
@@ -80,11 +76,7 @@ class Snapshot:
 
     @classmethod
     def of(cls, packed: bytes, sha256: str) -> Snapshot:
-        """A stored snapshot, opened.
-
-        Raises:
-            IntegrityError: it has changed since.
-        """
+        """A stored snapshot, opened; an IntegrityError if it has changed since."""
         files = dict(_members(packed))
         if _digest(files) != sha256:
             raise _damaged(sha256)
@@ -206,12 +198,8 @@ def _damaged(sha256: str) -> IntegrityError:
 
 @dataclass(frozen=True)
 class Unpacked:
-    """A snapshot that is unpacked.
-
-    Attributes:
-        folder: holds ``course``, importable, and ``content``.
-        catalog: the course in it.
-    """
+    """A snapshot that is unpacked: its folder has ``course``, importable, and ``content``, whose catalog is
+    here."""
 
     snapshot: Snapshot
     folder: Path

@@ -97,12 +97,8 @@ def _not_declared(package: str, allowed: str) -> ImportNotDeclaredError:
 
 
 class Imports:
-    """Refuses top-level packages that are neither the standard library's nor declared.
-
-    Args:
-        allowed: packages, and files of the submission, that may be imported.
-        declared: the packages, for the sentence.
-    """
+    """Refuses top-level packages that are neither the standard library's nor allowed; of these the
+    sentence names the ``declared`` ones, as the others are files of the submission."""
 
     def __init__(self, allowed: frozenset[str], declared: frozenset[str]) -> None:
         self._allowed = allowed

@@ -344,11 +344,8 @@ def allowed_calls(machine: str) -> dict[str, int]:
 
 
 def seccomp_program(machine: str = "") -> bytes:
-    """The filter as BPF, complete but for the worker's pid; built once, since building costs more than using.
-
-    Raises:
-        LockdownError: a machine whose system calls are not listed here.
-    """
+    """The filter as BPF, complete but for the worker's pid; built once, since building costs more than
+    using. It is a LockdownError where a machine's system calls are not listed here."""
     machine = machine or platform.machine()
     if machine not in _AUDIT_ARCH:
         raise LockdownError(0, f"no list of system calls for {machine}")

@@ -52,11 +52,8 @@ def march(step: Any, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) ->
 
 
 def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
-    """The result of ``function`` for each list of arguments, copied at once.
-
-    Returns:
-        The values, and the number of the first that a later call changed; None if they all stayed.
-    """
+    """The result of ``function`` for each list of arguments, copied at once, and the number of the first
+    that a later call changed; None if they all stayed."""
     values: list[Any] = []
     record: list[Any] = []
     for args in calls:

@@ -82,11 +82,7 @@ class Words:
         self.entries = entries
 
     def __call__(self, code: str, divergence: Divergence | None = None) -> Diagnosis:
-        """The diagnosis of that code.
-
-        Raises:
-            KeyError: the exercise has no words for it.
-        """
+        """The diagnosis of that code; KeyError if the exercise has no words for it."""
         if code == KEPT.code and code not in self.entries:
             return KEPT
         if code not in self.entries:
@@ -103,13 +99,8 @@ class Words:
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """One failed check of a task.
-
-    Attributes:
-        guess: the probe's diagnosis; None if it has none.
-        finite: False if a compared value was nan or infinite.
-        looked: its own probe was asked, on the numbers that it shows.
-    """
+    """One failed check of a task: its probe's diagnosis, whether all compared values were finite, and
+    whether its own probe was asked, on the numbers that it shows."""
 
     check: str
     guess: Diagnosis | None
@@ -266,12 +257,8 @@ _Kind = TypeVar("_Kind")
 
 
 class Row(msgspec.Struct, frozen=True, array_like=True):
-    """One wrong program: the codes of its mistakes, and its answers.
-
-    Attributes:
-        codes: one for each mistake.
-        sums: its fingerprint, or the answers themselves where a task is compared within a tolerance.
-    """
+    """One wrong program: the codes of its mistakes, and its fingerprint; or the answers themselves where a
+    task is compared within a tolerance."""
 
     codes: tuple[str, ...]
     sums: tuple[float, ...]
@@ -304,11 +291,7 @@ def table_path(folder: Path) -> Path:
 
 
 def read_table(folder: Path) -> Table | None:
-    """The table of the exercise in this folder; None if it has none.
-
-    Raises:
-        ContentError: it is damaged.
-    """
+    """The table of the exercise in this folder; None if it has none, ContentError if it is damaged."""
     path = table_path(folder)
     return (
         (tables_in(path).get(folder.name) if path.parent != folder else _own(path))

@@ -79,12 +79,8 @@ class Explainer:
         heard: Mapping[str, Past] = types.MappingProxyType({}),
         again: Again | None = None,
     ) -> None:
-        """Put the story of each task into the results of its failed checks.
-
-        Args:
-            heard: of failed checks, the CPU time they took, s, and the calls that were listened to.
-            again: asks the submission again, in workers of its own.
-        """
+        """Put the story of each task into the results of its failed checks. Of these, ``heard`` has the
+        CPU time that they took, s, and the calls that were listened to."""
         wrong = {
             result.task for result in results.values() if result.status not in {Status.PASS, Status.SKIP}
         }
@@ -260,11 +256,8 @@ _SAME = {"rtol": 1e-9, "atol": 1e-12}
 
 
 class Again:
-    """Asks a submission again, in two workers of its own that all of its tasks share.
-
-    Args:
-        anew: loads the submission in another worker.
-    """
+    """Asks a submission again, in two workers of its own that all of its tasks share; ``anew`` loads it in
+    one."""
 
     def __init__(self, anew: Callable[[], RemoteSubmission]) -> None:
         self._anew = anew

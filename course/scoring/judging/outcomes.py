@@ -103,12 +103,9 @@ def told_more(
 
 
 def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
-    """The finding where the check's own code raised an exception on the submission's value.
-
-    Args:
-        returned: name and value of the function that returned last; None if none did.
-        proven: the same check passes the model solution, so it is the value that is out of the ordinary.
-    """
+    """The finding where the check's own code raised an exception on what the function returned that
+    returned last. ``proven``: the check passes the model solution, so it is the value that is out of the
+    ordinary."""
     what = f"what `{returned[0]}` returned: {kind_of(returned[1])}" if returned else "this submission"
     doubt = (
         "" if proven else " There is no model solution here to tell whether the value or the check is wrong."
@@ -156,11 +153,8 @@ def load_problem(refused: LoadRefusedError, places: Places, exercise: str) -> Pr
 
 
 def left_out_notes(remote: RemoteSubmission, places: Places, tasks: Collection[str]) -> list[str]:
-    """What of a file was left out so that the rest could be checked, a sentence each.
-
-    Args:
-        tasks: the exercise's functions: of one that is no Python its checks tell.
-    """
+    """What of a file was left out so that the rest could be checked, a sentence each. Of a task that is no
+    Python its checks tell."""
     notes = []
     missing = frozenset(tasks) - frozenset(remote.functions)
     if remote.without is not None:

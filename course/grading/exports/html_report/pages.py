@@ -143,13 +143,7 @@ _LONGEST_NAME = 120
 
 
 def render(template: str, **words: Any) -> str:
-    """A page.
-
-    Args:
-        template: its name, without the end ``.html.j2``.
-        words: what it shows. All text is literal: it contains no markup, and cannot hide or reorder other
-            text.
-    """
+    """A page. All text in it is literal: it contains no markup, and cannot hide or reorder other text."""
     return _environment().get_template(f"{template}.html.j2").render(words)
 
 
@@ -278,12 +272,8 @@ _LEVELS = {
 
 
 def class_page(results: Results, tally: Tally, links: Mapping[str, str], index: str) -> str:
-    """The whole page.
-
-    Args:
-        links: student -> address of the student's page.
-        index: address of the list of students.
-    """
+    """The whole page; ``links`` has the address of each student's page, ``index`` that of the list of
+    students."""
     begun = [item for item in tally.exercises.values() if item.results]
     sections = [
         ("exercises", "Exercises"),
@@ -440,11 +430,8 @@ _STATES = {
 
 @dataclass(frozen=True)
 class _Shown:
-    """A student's result in one exercise, as the page has it.
-
-    Attributes:
-        tasks: unsolved ones first; each with its checks, failed ones first.
-    """
+    """A student's result in one exercise, as the page has it: unsolved tasks first, and in each failed
+    checks."""
 
     title: str
     effective: Effective

@@ -22,12 +22,8 @@ _ADVICES = 20  # texts of advice that are counted per diagnosis
 
 @dataclass
 class CheckTally:
-    """How a check went, over all graded submissions that ran it.
-
-    Attributes:
-        latest: one of its results, for its words.
-        statuses: number of submissions by how it ended; "unwritten" where its function was not begun.
-    """
+    """How a check went, over all graded submissions that ran it; ``latest`` is one of its results, for its
+    words. A function that was not begun counts as "unwritten"."""
 
     latest: CheckResult
     statuses: Counter[str] = field(default_factory=Counter)
@@ -167,12 +163,8 @@ class ExerciseTally:
 
 
 class CappedList:
-    """A list that shows a limited number of rows and counts all.
-
-    Args:
-        most: how many it shows.
-        by: shows those for which this is largest, the largest first; those that came first if None.
-    """
+    """A list that shows a limited number of rows and counts all: those for which ``by`` is largest, the
+    largest first, or those that came first."""
 
     def __init__(self, most: int = MOST_ROWS, by: Callable[[Effective], float] | None = None) -> None:
         self._most, self._by = most, by

@@ -67,7 +67,10 @@ def served(source: IO[bytes]) -> Iterator[bytes]:
         at_work = waiting.unfinished_tasks
         waiting.put(None)
         if at_work:
-            _interrupt_main()
+            if hasattr(signal, "pthread_kill"):  # which also ends a wait for a worker's answer
+                signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+            else:
+                _thread.interrupt_main()
             time.sleep(_LAST_S)
             os._exit(1)
 
@@ -141,13 +144,6 @@ class Servant:
 def path_with(folder: Path) -> str:
     """This process's ``PYTHONPATH`` with a folder before all others."""
     return os.pathsep.join(filter(None, (str(folder), os.environ.get("PYTHONPATH"))))
-
-
-def _interrupt_main() -> None:
-    if hasattr(signal, "pthread_kill"):  # which also ends a wait for a worker's answer
-        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
-    else:
-        _thread.interrupt_main()
 
 
 def limit_memory(size: int) -> None:

@@ -65,7 +65,11 @@ def score_record(bank: Bank, record: object) -> QuizScore | None:
     Raises:
         UngradableError: ``quiz_record_inconsistent``; the message says which attempt and what is wrong.
     """
-    attempts = _read(record)
+    # Words in place of a record are the reason why there is none.
+    fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)
+    if fault is not None:
+        raise _inconsistent(f"The quiz record is malformed ({fault}).")
+    attempts: tuple[_Record, ...] = msgspec.convert(record, _Records)
     if not attempts:
         return None
     results: dict[int, Result] = {}
@@ -126,14 +130,6 @@ def record_sha256(record: object) -> str:
 def quiz_version(bank: Bank) -> str:
     """The grader's version for the quiz: changes with any question file or with the way of scoring."""
     return hashlib.sha256(f"{GRADER_REVISION}/{bank.digest}".encode()).hexdigest()
-
-
-def _read(record: object) -> tuple[_Record, ...]:
-    """The attempts; words in place of a record become the reason why there are none."""
-    fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)
-    if fault is not None:
-        raise _inconsistent(f"The quiz record is malformed ({fault}).")
-    return msgspec.convert(record, _Records)
 
 
 def _fault(record: object) -> str | None:

@@ -58,11 +58,11 @@ MAX_LISTED = 1 << 20
 _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl", ".jar")
 
 
-class RefusedError(Exception):
+class RefusedError(UngradableError):
     """One candidate cannot be read: it must not be opened, is damaged, or is not there. All here raise it."""
 
     def __init__(self, code: str, message: str, advice: str) -> None:
-        super().__init__(message)
+        super().__init__(one_line(message), help=advice, code=code)
         self.problem = Problem(code, one_line(message), advice)
 
 
@@ -185,19 +185,15 @@ def _wanted_members(members: Iterable[str], exercise: Exercise) -> list[str]:
     return sorted(found, key=lambda name: (PurePosixPath(name).name not in names, "/" not in name, name))
 
 
-def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
-    """Names and contents of the modules and notebooks in a zip, except those to skip."""
-    held = _given(_held(path))
-    return [(raw, _given(held.files[name])) for name in held.files if (raw := held.names[name]) not in skip]
-
-
 def member_of(path: Path, name: str, meter: downloads.Meter) -> bytes:
     """The content of one member, by the name the archive has for it, or that name with plain slashes."""
 
     def is_it(plain: str, raw: str) -> bool:
         return name in {raw, raw.replace("\\", "/"), plain}
 
-    if (kind := _kind(path)) in _TARS:
+    with path.open("rb") as handle:
+        kind = downloads.kind_of(path.name, handle.read(512))
+    if kind in _TARS:
         found = dict(_compressed(path, kind, meter))
         if name in found:
             return found[name]
@@ -219,11 +215,6 @@ def _compressed(path: Path, kind: str, meter: downloads.Meter) -> list[tuple[str
         raise _refused(path, str(error)) from None
     except OSError as error:
         raise _refused(path, f"it cannot be read ({error})") from None
-
-
-def _kind(path: Path) -> str:
-    with path.open("rb") as handle:
-        return downloads.kind_of(path.name, handle.read(512))
 
 
 @dataclass(frozen=True)
@@ -567,7 +558,9 @@ def _outlines(
         content = handle.read(MAX_NOTEBOOK + 1)
     kind = downloads.kind_of(path.name, content)
     if kind == "a zip archive" or path.suffix.casefold() == ".zip":
-        files = outline_of(path, skip)
+        held = _given(_held(path))
+        wanted = [name for name in held.files if held.names[name] not in skip]
+        files = [(held.names[name], _given(held.files[name])) for name in wanted]
     elif kind in _TARS:
         files = _compressed(path, kind, meter)
     else:

@@ -497,7 +497,7 @@ def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | Non
         UngradableError: several files hold different attempts, or a file that may hold some was not read.
     """
     found: list[tuple[Any, Path]] = []
-    unread: Problem | None = None
+    unread: RefusedError | None = None
     place = student.place
     reader.turn_to(student)
     with contextlib.suppress(OSError):
@@ -511,7 +511,7 @@ def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | Non
                 record = reader.quiz_in(path, loose)
                 found += [(record, path)] if record else []
             except RefusedError as refused:
-                unread = refused.problem if alone or reader.spent else unread
+                unread = refused if alone or reader.spent else unread
     # A damaged record takes nothing from one that can be read.
     found = [one for one in found if not isinstance(one[0], str)] or found
     if any(record != found[0][0] for record, _ in found):
@@ -519,7 +519,7 @@ def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | Non
             "Several files hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"
         )
     if unread and not found:
-        raise UngradableError(unread.message, help=unread.help, code=unread.code)
+        raise unread
     return found[0] if found else ([], None)
 
 
@@ -661,9 +661,8 @@ def found_for(
             # What cannot be read as code can be named, and not proposed.
             worth, alike = (len(written), alike + 0.1 * bool(mine)) if one.kind in _READABLE else (0, 0.0)
             ranked.append((worth, alike, msgspec.structs.replace(one, defines=mine, written=written)))
-    handed_in = HANDED_IN
     ranked.sort(
-        key=lambda item: (-item[0], -item[1], not item[2].name.casefold().endswith(handed_in), item[2].name)
+        key=lambda item: (-item[0], -item[1], not item[2].name.casefold().endswith(HANDED_IN), item[2].name)
     )
     most = ranked[0][0] if ranked else 0
     distinct = {item[2].sha256: item[0] or item[1] for item in reversed(ranked)}

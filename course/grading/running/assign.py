@@ -12,16 +12,15 @@ from pathlib import Path
 import msgspec
 
 from course.catalog.load import Catalog
-from course.errors import CourseError, NotFoundError, UngradableError, UsageError
+from course.errors import CourseError, NotFoundError, UsageError
 from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
-from course.grading.intake.archives import RefusedError
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Candidate, Entry, Found, submission_from
 from course.grading.results.effective import Effective, Results, counted, given_reason, must_have, no_exercise
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.run import GradeAll
-from course.grading.running.snapshot import Unpacked, fresh, frozen, kept
+from course.grading.running.snapshot import fresh, frozen, kept
 from course.printable import command, quoted
 from course.scoring.judging.submission import Terms
 
@@ -191,26 +190,23 @@ def assign(
     timeout = float(options.get("timeout", 10.0))
     done: list[Assigned] = []
     with frozen(snapshot) as graders:
-        entries = {(one.student, one.exercise): (one, _entry(one, graders)) for one in assignments}
+        asked = {(one.student, one.exercise): one for one in assignments}
+        exercises = {one.exercise: graders.catalog.exercise(one.exercise) for one in assignments}
+        entries = [
+            Entry(one.student, exercise, submission_from(exercise, one.path, one.member))
+            for one in asked.values()
+            for exercise in [exercises[one.exercise]]
+        ]
         terms = Terms(level, at_least, timeout, results.seed, snapshot.sha256)
-        for graded in list(grade([entry for _, entry in entries.values()], terms)):
+        for graded in list(grade(entries, terms)):
             if not done:
                 book.keep_snapshot(snapshot.sha256, snapshot.packed)
                 facts = {"level": level, "at_least": at_least, "snapshot": snapshot.sha256}
                 book.begin_run("assign", {**options, **facts})
-            one, _ = entries[graded.entry.student, graded.entry.exercise.id]
+            one = asked[graded.entry.student, graded.entry.exercise.id]
             version = graded.version or graders.version(one.exercise)
             done.append(_recorded(results, one, graded, version, reason))
     return done
-
-
-def _entry(one: Assignment, graders: Unpacked) -> Entry:
-    exercise = graders.catalog.exercise(one.exercise)
-    try:
-        return Entry(one.student, exercise, submission_from(exercise, one.path, one.member))
-    except RefusedError as refused:
-        problem = refused.problem
-        raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
 
 
 def _recorded(results: Results, one: Assignment, graded: Graded, version: str, reason: str) -> Assigned:

@@ -24,7 +24,7 @@ from course.isolation.failures import IsolationError
 _PACKAGE = "course_worker"
 _COPIED = (
     "isolation/inside/wire.py",
-    *(f"isolation/inside/{name}.py" for name in ("loops", "statements", "declared", "loading")),
+    *(f"isolation/inside/{name}.py" for name in ("loops", "statements", "loading")),
     *(f"isolation/inside/{name}.py" for name in ("worker", "lockdown", "zygote")),
     "physics/systems.py",
 )

@@ -33,16 +33,8 @@ _KNOWN = frozenset(
 
 #: What is imported most; a name near one of these is misspelt, more likely than a file.
 _USUAL = (
-    "collections",
-    "dataclasses",
-    "functools",
-    "itertools",
-    "math",
-    "numpy",
-    "random",
-    "statistics",
-    "typing",
-)
+    "collections", "dataclasses", "functools", "itertools", "math", "numpy", "random", "statistics", "typing",
+)  # fmt: skip
 
 _TYPES = "Nobody types while a check runs. Ask in a file of your own that imports this one."
 _FILES = (
@@ -124,41 +116,30 @@ _ATTRIBUTE = re.compile(
 )
 #: Names that one NumPy has and another has not -> what all have.
 _INSTEAD = {
-    "trapz": "`np.trapezoid`",
-    "trapezoid": "`np.trapz`",
-    "in1d": "`np.isin`",
-    "product": "`np.prod`",
-    "cumproduct": "`np.cumprod`",
-    "cumulative_sum": "`np.cumsum`",
-    "cumulative_prod": "`np.cumprod`",
-    "sometrue": "`np.any`",
-    "alltrue": "`np.all`",
-    "float": "`float`",
-    "int": "`int`",
-    "bool": "`bool`",
-    "complex": "`complex`",
-    "object": "`object`",
-    "str": "`str`",
-    "Inf": "`np.inf`",
-    "Infinity": "`np.inf`",
-    "infty": "`np.inf`",
-    "PINF": "`np.inf`",
-    "NINF": "`-np.inf`",
-    "NaN": "`np.nan`",
-    "NAN": "`np.nan`",
-    "asfarray": "`np.asarray`",
-    "row_stack": "`np.vstack`",
-    "round_": "`np.round`",
-    "float_": "`np.float64`",
-    "matvec": "`@`",
-    "vecmat": "`@`",
-    "vecdot": "`np.einsum`",
+    "trapz": "np.trapezoid",
+    "trapezoid": "np.trapz",
+    "in1d": "np.isin",
+    "product": "np.prod",
+    "cumulative_sum": "np.cumsum",
+    "sometrue": "np.any",
+    "alltrue": "np.all",
+    "NINF": "-np.inf",
+    "asfarray": "np.asarray",
+    "row_stack": "np.vstack",
+    "round_": "np.round",
+    "float_": "np.float64",
+    "vecdot": "np.einsum",
+    **dict.fromkeys(("cumproduct", "cumulative_prod"), "np.cumprod"),
+    **dict.fromkeys(("Inf", "Infinity", "infty", "PINF"), "np.inf"),
+    **dict.fromkeys(("NaN", "NAN"), "np.nan"),
+    **dict.fromkeys(("matvec", "vecmat"), "@"),
+    **{name: name for name in ("float", "int", "bool", "complex", "object", "str")},
 }
 
 
 def instead(module: str, name: str) -> str:
     """What to write for a name that not every version has, as a sentence; "" where nothing is known."""
-    return f" Use {_INSTEAD[name]}." if module == "numpy" and name in _INSTEAD else ""
+    return f" Use `{_INSTEAD[name]}`." if module == "numpy" and name in _INSTEAD else ""
 
 
 def gone(failure: StudentFailure, *, shown: bool = True) -> str:

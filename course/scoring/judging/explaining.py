@@ -37,7 +37,7 @@ from course.scoring.explain.story import (
 from course.scoring.failures import CheckFailed
 from course.scoring.remote import Heard, RemoteSubmission
 from course.scoring.values import leaves
-from course.scoring.verdict import CheckResult, Finding, Status
+from course.scoring.verdict import CheckResult, Status
 
 #: Diagnosis of a function that calls another function of the exercise, which is wrong itself.
 CASCADE = "CALLS_A_WRONG_FUNCTION"
@@ -81,9 +81,8 @@ class Explainer:
     ) -> None:
         """Put the story of each task into the results of its failed checks. Of these, ``heard`` has the
         CPU time that they took, s, and the calls that were listened to."""
-        wrong = {
-            result.task for result in results.values() if result.status not in {Status.PASS, Status.SKIP}
-        }
+        fine = {Status.PASS, Status.SKIP}
+        wrong = {result.task for result in results.values() if result.status not in fine}
         callers = calls_between(source, tasks_asked(self._questions))
         for task in sorted(wrong):
             of_task = [result for result in results.values() if result.task == task]
@@ -98,9 +97,8 @@ class Explainer:
             kept = bool(again and not gone and not culprits and _kept(past, task, again))
             for name in dict.fromkeys(self._parts.get(check.id, task) for check in checks):
                 part = [check for check in checks if self._parts.get(check.id, task) == name]
-                story = self._story(
-                    name, {check.id: failed[check.id] for check in part}, said.get(name), kept
-                )
+                mine = {check.id: failed[check.id] for check in part}
+                story = self._story(name, mine, said.get(name), kept)
                 for check in part:
                     if check.id not in story.own:
                         results[check.id] = _retold(check, failed[check.id], story, task, culprits)
@@ -121,8 +119,9 @@ class Explainer:
         self, name: str, failed: Mapping[str, CheckFailed], sums: tuple[float, ...] | None, kept: bool
     ) -> Story:
         failures = [
-            Failure(check, failure.guess, _finite(failure.finding), failure.looked)
-            for check, failure in failed.items()
+            # Finite, or not where finite numbers were expected.
+            Failure(check, one.guess, not _odd(one.finding.actual) or _odd(one.finding.expected), one.looked)
+            for check, one in failed.items()
         ]
         wrong = sums and not is_right(self._table, name, sums)
         fits = matching(self._table, name, sums) if sums and wrong else ()
@@ -212,33 +211,19 @@ def _retold(
     if culprits:
         # Of several, which one this check's number comes from is not known.
         names = " and ".join(", ".join(f"`{name}`" for name in culprits).rsplit(", ", 1))
-        many = len(culprits) > 1
-        wrong, right = (
-            ("which are wrong: fix them first", "are") if many else ("which is wrong: fix that first", "is")
-        )
-        return msgspec.structs.replace(
-            check,
-            diagnosis=CASCADE,
-            message=f"{message} `{task}` calls your {names}, {wrong}.",
-            help=f"Check again when {names} {right} right; what is left then is `{task}`'s own.",
-        )
+        are, them = ("are", "them") if len(culprits) > 1 else ("is", "that")
+        message = f"{message} `{task}` calls your {names}, which {are} wrong: fix {them} first."
+        advice = f"Check again when {names} {are} right; what is left then is `{task}`'s own."
+        return msgspec.structs.replace(check, diagnosis=CASCADE, message=message, help=advice)
     diagnosis: Diagnosis | None = None if check.id in story.bare else story.diagnosis
     if diagnosis is None:
         return msgspec.structs.replace(check, diagnosis=None, message=message, help=advice)
-    return msgspec.structs.replace(
-        check,
-        diagnosis=diagnosis.code,
-        message=said_once(message, diagnosis.looks_like),
-        help=diagnosis.advice or advice,
-    )
-
-
-def _finite(finding: Finding) -> bool:
-    """Whether the compared values are finite where finite numbers were expected."""
-    return not _odd(finding.actual) or _odd(finding.expected)
+    message, advice = said_once(message, diagnosis.looks_like), diagnosis.advice or advice
+    return msgspec.structs.replace(check, diagnosis=diagnosis.code, message=message, help=advice)
 
 
 def _odd(value: Any) -> bool:
+    """Whether a number in it is nan or infinite."""
     return any(isinstance(item, float) and not math.isfinite(item) for item in leaves(value))
 
 

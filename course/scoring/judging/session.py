@@ -169,18 +169,16 @@ class GradingSession:
             remote = self._load(submission)
         except LoadRefusedError as refused:
             self.printed = beginning(refused.printed, _PRINTED)
-            return self._verdict(
-                "ungradable", error=load_problem(refused, self._places(submission), self.exercise.id)
-            )
+            problem = load_problem(refused, self._places(submission), self.exercise.id)
+            return self._verdict("ungradable", error=problem)
         except IsolationError as error:
             return self._grader_error(str(error))
         try:
             if not any(task.id in remote.functions for task in self.exercise.task):
                 return self._verdict("ungradable", error=self._nothing_loaded(remote, submission))
             self._remote = remote
-            left_out = left_out_notes(
-                remote, self._places(submission), [task.id for task in self.exercise.task]
-            )
+            tasks = [task.id for task in self.exercise.task]
+            left_out = left_out_notes(remote, self._places(submission), tasks)
             self.printed = beginning(remote.printed(), _PRINTED)
             results = self._run(remote, only, submission)
         except IsolationError as error:
@@ -247,9 +245,11 @@ class GradingSession:
         self, remote: RemoteSubmission, only: Collection[str], submission: Submission
     ) -> list[CheckResult]:
         places = self._places(submission)
+        wanted = set(only)
         ordered = self._checks.in_order()
         if only:
-            wanted = _with_required(only, ordered)
+            for check in reversed(ordered):  # each comes after those it requires
+                wanted.update(check.requires if check.id in wanted else ())
             ordered = [check for check in ordered if check.id in wanted]
         source = submission.files[self.exercise.module]
         results: dict[str, CheckResult] = {}
@@ -257,10 +257,10 @@ class GradingSession:
         for kept in of_this_run:
             kept.clear()
         for check in ordered:
-            blocking = next(
-                (name for name in check.requires if results[name].status is not Status.PASS), None
+            blocking = [name for name in check.requires if results[name].status is not Status.PASS]
+            results[check.id] = (
+                skipped(check, blocking[0]) if blocking else self._run_one(check, remote, places)
             )
-            results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote, places)
         if self._explainer is not None and self._failed:
             with Again(lambda: self._load(submission)) as again:
                 self._explainer.explain(results, self._failed, remote, source, self._heard, again)
@@ -456,18 +456,6 @@ def pinned_to(processor: int | None) -> Iterator[None]:
         yield
     finally:
         os.sched_setaffinity(0, before)
-
-
-def _with_required(only: Collection[str], checks: list[Check]) -> set[str]:
-    by_id = {check.id: check for check in checks}
-    wanted: set[str] = set()
-    left = list(only)
-    while left:
-        name = left.pop()
-        if name not in wanted:
-            wanted.add(name)
-            left += by_id[name].requires
-    return wanted
 
 
 # ---

@@ -260,11 +260,8 @@ def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, a
     ]
     unknown = [name for name in exercises if name not in graded]
     if unknown:
-        raise NotFoundError(
-            f"The gradebook has no code for the exercise {unknown[0]!r}.",
-            help=f"It has {', '.join(graded) or 'none'}.",
-            code="exercise_not_found",
-        )
+        message = f"The gradebook has no code for the exercise {unknown[0]!r}."
+        raise NotFoundError(message, help=f"It has {', '.join(graded) or 'none'}.", code="exercise_not_found")
     with Parser() as parse:
         shipped = _shipped(catalog, parse) if graded else {}
         for name in graded:

@@ -42,11 +42,8 @@ def read_notebook(path: Path) -> bytes:
         if not path.is_file():
             raise UsageError(f"{path} is not a file.", help="Name a notebook.", code="not_a_file")
         if path.stat().st_size > MAX_NOTEBOOK:
-            raise UsageError(
-                f"{path} is larger than {MAX_NOTEBOOK >> 20} MB.",
-                help="Clear its outputs and save it.",
-                code="too_large",
-            )
+            message = f"{path} is larger than {MAX_NOTEBOOK >> 20} MB."
+            raise UsageError(message, help="Clear its outputs and save it.", code="too_large")
         return path.read_bytes()
     except OSError as error:
         raise UsageError(

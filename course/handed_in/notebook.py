@@ -89,19 +89,14 @@ def code_cells(data: bytes, name: str) -> list[CodeCell]:
     """The code cells of a notebook, in its order; UngradableError if it is none, or one of another
     language."""
     if len(data) > MAX_NOTEBOOK:
-        raise UngradableError(
-            f"{name} is larger than {MAX_NOTEBOOK >> 20} MB.",
-            help="Clear its outputs, save it, and hand it in again.",
-            code="too_large",
-        )
+        message = f"{name} is larger than {MAX_NOTEBOOK >> 20} MB."
+        advice = "Clear its outputs, save it, and hand it in again."
+        raise UngradableError(message, help=advice, code="too_large")
     notebook = _decoded(data, name)
     language = _language(notebook.metadata)
     if language not in {"", "python"}:
-        raise UngradableError(
-            f"{name} is a notebook for {quoted(language)}, not for Python.",
-            help="Write the functions in a Python notebook.",
-            code="other_kernel",
-        )
+        message = f"{name} is a notebook for {quoted(language)}, not for Python."
+        raise UngradableError(message, help="Write the functions in a Python notebook.", code="other_kernel")
     cells = notebook.cells or [cell for sheet in notebook.worksheets for cell in sheet.cells]
     codes = [(number, cell) for number, cell in enumerate(cells, 1) if cell.cell_type == "code"]
     _must_be_small([(number, len(_text(cell))) for number, cell in codes], name)
@@ -116,19 +111,14 @@ def typed_cell(number: int, text: str) -> CodeCell:
 def _must_be_small(sizes: list[tuple[int, int]], name: str) -> None:
     """Refuse too much code before it is parsed: a syntax tree is far larger than its text."""
     if len(sizes) > MAX_CELLS:
-        raise UngradableError(
-            f"{name} has {len(sizes):,} code cells.",
-            help=f"Hand in a notebook with at most {MAX_CELLS:,}.",
-            code="too_large",
-        )
+        advice = f"Hand in a notebook with at most {MAX_CELLS:,}."
+        raise UngradableError(f"{name} has {len(sizes):,} code cells.", help=advice, code="too_large")
     if sum(size for _, size in sizes) <= MAX_CODE:
         return
     number, size = max(sizes, key=lambda one: one[1])
-    raise UngradableError(
-        f"The code of {name} is larger than {MAX_CODE >> 20} MB; cell {number} has {size:,} characters.",
-        help="Keep data out of the cells; the exercise needs none.",
-        code="too_large",
-    )
+    message = f"The code of {name} is larger than {MAX_CODE >> 20} MB; cell {number} has {size:,} characters."
+    advice = "Keep data out of the cells; the exercise needs none."
+    raise UngradableError(message, help=advice, code="too_large")
 
 
 def _decoded(data: bytes, name: str) -> _Notebook:
@@ -290,11 +280,8 @@ def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook")
     try:
         return source_of(code_cells(data, name), exercise, name)
     except RecursionError:
-        raise UngradableError(
-            f"{name} holds an expression nested too deeply to be read.",
-            help="Split it into several lines.",
-            code="too_deep",
-        ) from None
+        message = f"{name} holds an expression nested too deeply to be read."
+        raise UngradableError(message, help="Split it into several lines.", code="too_deep") from None
 
 
 def source_of(
@@ -307,16 +294,11 @@ def source_of(
     if not chosen:
         listed = ", ".join(task.id for task in exercise.task)
         if not any(cell.text.strip() for cell in cells):
-            raise UngradableError(
-                f"{name} has no code in it.",
-                help="Was it saved after you wrote it? `course notebook build` makes a new one.",
-                code="no_declared_functions",
-            )
-        raise UngradableError(
-            f"{name} defines none of the functions of this exercise.",
-            help=f"Keep the names the notebook gave: {listed}.",
-            code="no_declared_functions",
-        )
+            advice = "Was it saved after you wrote it? `course notebook build` makes a new one."
+            raise UngradableError(f"{name} has no code in it.", help=advice, code="no_declared_functions")
+        message = f"{name} defines none of the functions of this exercise."
+        advice = f"Keep the names the notebook gave: {listed}."
+        raise UngradableError(message, help=advice, code="no_declared_functions")
     names = {cell.number: f"cell {cell.number}" for cell in cells} | dict(called or {})
     notes = _notes(cells, chosen, exercise, names)
     return replace(_written(_blocks(cells, chosen, functions), notes), called=dict(called or {}))

@@ -73,10 +73,8 @@ def check_scheduler(address: str) -> None:
     if place.scheme == "tls":
         _check_tls(url, host, port, _context(settings), settings)
     elif settings.get("require_encryption"):
-        raise _problem(
-            f"{url} is not encrypted, and Dask's settings require encryption.",
-            f"Name it as tls://{host}:{port}, or unset DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION.",
-        )
+        fix = f"Name it as tls://{host}:{port}, or unset DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION."
+        raise _problem(f"{url} is not encrypted, and Dask's settings require encryption.", fix)
     else:
         _check_plain(url, host, port)
 
@@ -138,10 +136,8 @@ def _context(settings: dict[str, Any]) -> ssl.SSLContext:
     except (ssl.SSLError, OSError, ValueError, TypeError) as error:
         reason = getattr(error, "reason", None) or str(error)
         wrong = "the key does not belong to the certificate" if "MISMATCH" in str(reason) else str(reason)
-        raise _problem(
-            f"The certificates in Dask's settings cannot be used: {wrong}.",
-            f"Look at {', '.join(variable for variable, _ in _SETTINGS.values())}.",
-        ) from None
+        fix = f"Look at {', '.join(variable for variable, _ in _SETTINGS.values())}."
+        raise _problem(f"The certificates in Dask's settings cannot be used: {wrong}.", fix) from None
     assert isinstance(context, ssl.SSLContext)
     return context
 
@@ -183,10 +179,8 @@ def _check_tls(url: str, host: str, port: int, context: ssl.SSLContext, settings
 def _told(url: str, host: str, port: int, error: Exception) -> CourseError:
     """Why there was no handshake."""
     if isinstance(error, ssl.SSLError) and "ALERT" in str(error.reason):
-        return _problem(
-            f"The scheduler at {url} does not take the certificate of this side.",
-            "Set DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT and ..._KEY to one its authority signed.",
-        )
+        fix = "Set DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT and ..._KEY to one its authority signed."
+        return _problem(f"The scheduler at {url} does not take the certificate of this side.", fix)
     return _problem(
         f"What answers at {host}:{port} does not speak TLS.", f"Is the scheduler tcp://{host}:{port}?"
     )
@@ -204,10 +198,8 @@ def _check_plain(url: str, host: str, port: int) -> None:
     with _connected(url, host, port) as plain, contextlib.suppress(OSError):
         plain.settimeout(_HANDSHAKE_S)
         asking.wrap_socket(plain, server_hostname=host).close()
-        raise _problem(
-            f"The scheduler at {url} speaks TLS.",
-            f"Name it as tls://{host}:{port}, with the certificates that docs/cluster.md describes.",
-        )
+        fix = f"Name it as tls://{host}:{port}, with the certificates that docs/cluster.md describes."
+        raise _problem(f"The scheduler at {url} speaks TLS.", fix)
 
 
 def _connected(url: str, host: str, port: int) -> socket.socket:
@@ -219,11 +211,8 @@ def _connected(url: str, host: str, port: int) -> socket.socket:
 
 def _silent(where: str, error: OSError) -> CourseError:
     reason = (error.strerror or str(error) or type(error).__name__).lower()
-    return _problem(
-        f"No Dask scheduler answers at {where}: {reason}.",
-        "Is it running, and can this machine reach it?",
-        "no_scheduler",
-    )
+    fix = "Is it running, and can this machine reach it?"
+    return _problem(f"No Dask scheduler answers at {where}: {reason}.", fix, "no_scheduler")
 
 
 def _problem(message: str, fix: str, code: str = "no_tls") -> MissingCapabilityError:
@@ -327,11 +316,9 @@ def _reach(stack: contextlib.ExitStack, address: str) -> Any:
     try:
         client = Client(**where, timeout=_ANSWER_S, set_as_default=False)
     except (OSError, TimeoutError) as error:
-        raise MissingCapabilityError(
-            f"No Dask scheduler answers at {address}: {error}.",
-            help="Is it running, can this machine reach it, and has this command the same TLS settings?",
-            code="no_scheduler",
-        ) from None
+        message = f"No Dask scheduler answers at {address}: {error}."
+        advice = "Is it running, can this machine reach it, and has this command the same TLS settings?"
+        raise MissingCapabilityError(message, help=advice, code="no_scheduler") from None
     except (ValueError, TypeError) as error:
         raise UsageError(
             f"--scheduler {address} is not an address: {error}.", help="It looks like tls://name:8786."
@@ -395,20 +382,16 @@ def _outcome(future: Any, *, connected: bool) -> Outcome:
         return LostBatch(int(getattr(error, "allowed_failures", 0)) + 1)
     cause = next((e for e in _chain(error) if isinstance(e, ImportError | AttributeError)), None)
     if cause is not None:
-        return MissingCapabilityError(
-            f"The cluster's scheduler or a worker has no such course: {cause}.",
-            help="Install the same checkout of the course where the scheduler and the workers run.",
-            code="version_mismatch",
-        )
+        message = f"The cluster's scheduler or a worker has no such course: {cause}."
+        advice = "Install the same checkout of the course where the scheduler and the workers run."
+        return MissingCapabilityError(message, help=advice, code="version_mismatch")
     return InternalError(f"A worker of the cluster failed: {type(error).__name__}: {error}.")
 
 
 def _scheduler_gone() -> MissingCapabilityError:
-    return MissingCapabilityError(
-        "The cluster's scheduler is gone; all results so far are kept.",
-        help="Start it again, then run the same command with --resume.",
-        code="no_scheduler",
-    )
+    message = "The cluster's scheduler is gone; all results so far are kept."
+    advice = "Start it again, then run the same command with --resume."
+    return MissingCapabilityError(message, help=advice, code="no_scheduler")
 
 
 def _chain(error: BaseException | None) -> Iterator[BaseException]:

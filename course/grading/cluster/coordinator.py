@@ -178,11 +178,9 @@ class _Coordinator:
             self._seen_at = now
         self._places = max(1, places)  # what waits on the cluster is begun by the next worker that comes
         if now - self._seen_at > self._patience_s:
-            raise MissingCapabilityError(
-                "The cluster has no workers left; all results so far are kept.",
-                help="Start workers, then run the same command with --resume.",
-                code="no_workers",
-            )
+            message = "The cluster has no workers left; all results so far are kept."
+            advice = "Start workers, then run the same command with --resume."
+            raise MissingCapabilityError(message, help=advice, code="no_workers")
 
     # -- back -----------------------------------------------------------------------------------------
 
@@ -201,11 +199,9 @@ class _Coordinator:
 
     def _answered(self, batch: list[_Work], reply: Answers | None) -> None:
         if reply is None:
-            raise MissingCapabilityError(
-                "A worker of the cluster answers in another version of the protocol.",
-                help="Install the same checkout of the course on every machine, and restart the workers.",
-                code="version_mismatch",
-            )
+            message = "A worker of the cluster answers in another version of the protocol."
+            advice = "Install the same checkout of the course on every machine, and restart the workers."
+            raise MissingCapabilityError(message, help=advice, code="version_mismatch")
         if reply.wanting and self._graders:
             self._wanting.append(batch)
             return

@@ -99,11 +99,8 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
             return
         with contextlib.suppress(OSError), path.open("rb") as handle:
             if handle.read(len(_DATABASE)) == _DATABASE:
-                raise UsageError(
-                    f"{path} is a database, most likely a gradebook; it was not changed.",
-                    help="Name another file with -o.",
-                    code="is_a_database",
-                )
+                message = f"{path} is a database, most likely a gradebook; it was not changed."
+                raise UsageError(message, help="Name another file with -o.", code="is_a_database")
         path.parent.mkdir(parents=True, exist_ok=True)
         draft = path.with_name(f".{path.name}.{os.getpid()}")
         with draft.open("wb") as handle:

@@ -116,11 +116,9 @@ def _check_assignments(selection: Selection, options: ExportOptions) -> None:
             )
     for name, assignment in options.assignments.items():
         if not (assignment.isascii() and assignment.isdigit()):
-            raise UsageError(
-                f"The assignment's id for {name} is {assignment!r}, not a number.",
-                help="It is the number at the end of the assignment's address in Canvas.",
-                code="needs_assignment",
-            )
+            message = f"The assignment's id for {name} is {assignment!r}, not a number."
+            advice = "It is the number at the end of the assignment's address in Canvas."
+            raise UsageError(message, help=advice, code="needs_assignment")
         if options.columns and assignment not in options.columns:
             named = one_line(", ".join(column.heading for column in options.columns.values()))
             raise UsageError(
@@ -232,11 +230,8 @@ _MODIFIED, _FEEDBACK, _OPEN = "Last modified (grade)", "Feedback comments", "Gra
 def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Written:
     """The worksheet with the grades of one exercise; a UsageError if there is none, or not one exercise."""
     if options.worksheet is None:
-        raise UsageError(
-            "There is no worksheet to fill in.",
-            help="Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'.",
-            code="needs_roster",
-        )
+        advice = "Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'."
+        raise UsageError("There is no worksheet to fill in.", help=advice, code="needs_roster")
     selection = select(results, options, usable=lambda person: bool(person.moodle_key), needs=_NEEDS)
     if len(selection.exercises) != 1:
         raise UsageError(
@@ -349,11 +344,8 @@ def _feedback(effective: Effective) -> str:
 
 
 def _wrong(path: Path, why: str) -> UsageError:
-    return UsageError(
-        f"{path}: {why}.",
-        help="Give the file that Moodle's 'Download grading worksheet' made, unchanged.",
-        code="invalid_worksheet",
-    )
+    advice = "Give the file that Moodle's 'Download grading worksheet' made, unchanged."
+    return UsageError(f"{path}: {why}.", help=advice, code="invalid_worksheet")
 
 
 # ---

@@ -128,11 +128,9 @@ def select(
     if unknown:
         raise no_exercise(unknown[0], sorted(known))
     if usable is not None and results.roster is None:
-        raise UsageError(
-            "This format finds students by the platform's ids, which are in a roster.",
-            help="Add --roster FILE; docs/instructor.md shows one.",
-            code="needs_roster",
-        )
+        message = "This format finds students by the platform's ids, which are in a roster."
+        advice = "Add --roster FILE; docs/instructor.md shows one."
+        raise UsageError(message, help=advice, code="needs_roster")
     written = Written()
     people: dict[str, Person] = {}
     key = " or ".join(needs.columns) if needs else ""
@@ -207,11 +205,8 @@ def begins(path: Path, mark: bytes) -> bool:
 def refuse_to_replace(folder: Path, files: Iterable[Path], made: str) -> None:
     """Refuse to replace files in a folder which no export to ``made`` wrote."""
     if names := [one_line(str(file.relative_to(folder))) for file in sorted(files) if file.exists()]:
-        raise UsageError(
-            f"{folder} has {some(names, 3)}, and no export to {made} made it. Nothing was written.",
-            help="Name a folder without it: -o FOLDER.",
-            code="out_exists",
-        )
+        message = f"{folder} has {some(names, 3)}, and no export to {made} made it. Nothing was written."
+        raise UsageError(message, help="Name a folder without it: -o FOLDER.", code="out_exists")
 
 
 def is_part(results: Results, options: ExportOptions) -> bool:
@@ -224,11 +219,8 @@ def is_part(results: Results, options: ExportOptions) -> bool:
 def _has_column(roster: Roster, needs: Needs) -> None:
     """Refuse a roster in which nobody has the platform's key: a list of all students would hide that."""
     if not any(getattr(person, name) for person in roster.people for name in needs.columns):
-        raise MissingCapabilityError(
-            f"{roster.called} {needs.absent()}. Nothing was written.",
-            help=needs.give,
-            code="unmatched_students",
-        )
+        message = f"{roster.called} {needs.absent()}. Nothing was written."
+        raise MissingCapabilityError(message, help=needs.give, code="unmatched_students")
 
 
 def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapabilityError:

@@ -202,10 +202,8 @@ def explained(path: Path) -> Iterator[None]:
     except sqlite3.OperationalError as error:
         raise _operational(path, error) from None
     except (sqlite3.DatabaseError, msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
-        raise IntegrityError(
-            f"{path} is damaged: {one_line(str(error))[:_MOST_SAID]}.",
-            help=rescue(path),
-        ) from None
+        message = f"{path} is damaged: {one_line(str(error))[:_MOST_SAID]}."
+        raise IntegrityError(message, help=rescue(path)) from None
 
 
 def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
@@ -391,11 +389,9 @@ def _checked_format(db: sqlite3.Connection, path: Path) -> int:
         raise IntegrityError(f"{path} is not a gradebook.", help=rescue(path, "Name another folder."))
     version = int(_one(db, "PRAGMA user_version"))
     if version > FORMAT_VERSION:
-        raise MissingCapabilityError(
-            f"{path} was written by a newer version of this course (format {version}).",
-            help="Update the course; nothing was changed.",
-            code="newer_format",
-        )
+        message = f"{path} was written by a newer version of this course (format {version})."
+        advice = "Update the course; nothing was changed."
+        raise MissingCapabilityError(message, help=advice, code="newer_format")
     return version
 
 

@@ -200,11 +200,9 @@ def back_up(path: Path) -> None:
         draft.replace(_named(path, 1))
     except OSError as error:
         draft.unlink(missing_ok=True)
-        raise MissingCapabilityError(
-            f"The backup of {path} cannot be written: {error.strerror}.",
-            help="The gradebook is complete. Make room, and give the command again (a run with --resume).",
-            code="no_backup",
-        ) from None
+        message = f"The backup of {path} cannot be written: {error.strerror}."
+        advice = "The gradebook is complete. Make room, and give the command again (a run with --resume)."
+        raise MissingCapabilityError(message, help=advice, code="no_backup") from None
 
 
 def backups(path: Path) -> list[Path]:
@@ -245,11 +243,9 @@ def salvage(path: Path, target: Path) -> Salvaged:
     """
     others = backups(path)
     if not path.is_file() and not others:
-        raise NotFoundError(
-            f"There is no gradebook at {path}, and no backup of one.",
-            help="Name the folder that `course grade run --out` wrote.",
-            code="gradebook_not_found",
-        )
+        message = f"There is no gradebook at {path}, and no backup of one."
+        advice = "Name the folder that `course grade run --out` wrote."
+        raise NotFoundError(message, help=advice, code="gradebook_not_found")
     found: dict[str, dict[Row, Row]] = {name: {} for name in TABLES}
     told = Salvaged()
     if path.is_file():

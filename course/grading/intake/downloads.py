@@ -202,11 +202,8 @@ def class_list(folder: Path, layout: str = "auto") -> ClassList:
     found = readers[layout](folder, names)
     found.students.sort(key=lambda student: student.name)
     if not found.students and not found.unrecognised:
-        raise NotFoundError(
-            f"{folder} holds no submissions.",
-            help="Name the folder that holds one folder per student, or an unpacked download.",
-            code="no_submissions",
-        )
+        advice = "Name the folder that holds one folder per student, or an unpacked download."
+        raise NotFoundError(f"{folder} holds no submissions.", help=advice, code="no_submissions")
     return found
 
 
@@ -252,11 +249,9 @@ def _recognised(folder: Path, names: list[str]) -> str:
         return "folders"
     if odd:
         listed = some([*map(quoted, odd)], _SHOWN)
-        raise UsageError(
-            f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}.",
-            help=f"Move these elsewhere, or choose the kind: --layout folders or --layout {layout}.",
-            code="mixed_layout",
-        )
+        message = f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}."
+        advice = f"Move these elsewhere, or choose the kind: --layout folders or --layout {layout}."
+        raise UsageError(message, help=advice, code="mixed_layout")
     return layout
 
 

@@ -493,11 +493,8 @@ def override(results: Results, student: str, exercise: str, score: float, reason
     """
     most = _maximum(results, student, exercise)
     if not math.isfinite(score) or not 0 <= score <= most:
-        raise UsageError(
-            f"--score is {score:g}; {exercise} has 0 to {most:g} points.",
-            help="Give the points that are to count.",
-            code="impossible_score",
-        )
+        message = f"--score is {score:g}; {exercise} has 0 to {most:g} points."
+        raise UsageError(message, help="Give the points that are to count.", code="impossible_score")
     reason = given_reason(reason, "An override", "it is shown wherever the score is")
     before = _told(next(results.all(student, exercise), None))
     results.book.add_override(Override(student, exercise, float(score) + 0.0, reason), before)
@@ -508,11 +505,8 @@ def given_reason(reason: str, what: str, shown: str) -> str:
     """An instructor's reason for a decision; a UsageError if there is none, or it is too long."""
     reason = reason.strip()
     if not reason or len(reason) > _MAX_REASON:
-        raise UsageError(
-            f"{what} needs a reason of at most {_MAX_REASON} characters.",
-            help=f"Add --reason: {shown}.",
-            code="no_reason",
-        )
+        message = f"{what} needs a reason of at most {_MAX_REASON} characters."
+        raise UsageError(message, help=f"Add --reason: {shown}.", code="no_reason")
     return reason
 
 
@@ -522,11 +516,8 @@ def lift(results: Results, student: str, exercise: str, reason: str) -> Effectiv
     found = next(results.all(student, exercise), None)
     if found is None or found.override is None:
         explain = command("grade", "explain", results.folder, student, exercise)
-        raise NotFoundError(
-            f"There is no override for {student!r} and {exercise}.",
-            help=f"{explain} shows what counts.",
-            code="no_override",
-        )
+        message = f"There is no override for {student!r} and {exercise}."
+        raise NotFoundError(message, help=f"{explain} shows what counts.", code="no_override")
     results.book.add_override(Override(student, exercise, None, reason.strip()), _told(found))
     return next(Results(results.book).all(student, exercise), None)
 
@@ -540,31 +531,24 @@ def _told(counts: Effective | None) -> str:
 
 def no_exercise(exercise: str, known: Sequence[str]) -> NotFoundError:
     """What is said of an exercise that a gradebook does not have."""
-    return NotFoundError(
-        f"The gradebook has no exercise {exercise!r}.",
-        help=f"It has {', '.join(known) or 'none'}.",
-        code="exercise_not_found",
-    )
+    message = f"The gradebook has no exercise {exercise!r}."
+    return NotFoundError(message, help=f"It has {', '.join(known) or 'none'}.", code="exercise_not_found")
 
 
 def _only(students: Sequence[str], name: str) -> str:
     if len(students) > 1:
-        raise NotFoundError(
-            f"{len(students)} students are called {name!r}.",
-            help=f"The gradebook calls them {some([one_line(one) for one in students], 4)}: name one.",
-            code="student_not_found",
-        )
+        message = f"{len(students)} students are called {name!r}."
+        advice = f"The gradebook calls them {some([one_line(one) for one in students], 4)}: name one."
+        raise NotFoundError(message, help=advice, code="student_not_found")
     return students[0] if students else name
 
 
 def must_have(results: Results, student: str) -> None:
     """Refuse a name that is no student's of the gradebook (NotFoundError)."""
     if student not in results.students():
-        raise NotFoundError(
-            f"The gradebook has no student {student!r}.",
-            help="grades.csv lists all, and with a roster everybody who is enrolled.",
-            code="student_not_found",
-        )
+        message = f"The gradebook has no student {student!r}."
+        advice = "grades.csv lists all, and with a roster everybody who is enrolled."
+        raise NotFoundError(message, help=advice, code="student_not_found")
 
 
 def _maximum(results: Results, student: str, exercise: str) -> float:

@@ -312,8 +312,5 @@ def _seconds(path: Path, line: int, text: str) -> float:
 
 
 def _wrong_times(path: Path, why: str) -> UsageError:
-    return UsageError(
-        f"{path}: {why}.",
-        help="It is a CSV file: student, exercise, submitted_at, as in 2026-12-01T23:59:00+01:00.",
-        code="invalid_times",
-    )
+    advice = "It is a CSV file: student, exercise, submitted_at, as in 2026-12-01T23:59:00+01:00."
+    return UsageError(f"{path}: {why}.", help=advice, code="invalid_times")

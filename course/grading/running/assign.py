@@ -99,11 +99,9 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
         ]
         names = {item.exercise for item in proposing or having} or set(known)
         if len(names) != 1:
-            raise UsageError(
-                f"Which exercise {file} is for does not follow.",
-                help=f"Add --exercise, one of {', '.join(sorted(names))}.",
-                code="needs_exercise",
-            )
+            message = f"Which exercise {file} is for does not follow."
+            advice = f"Add --exercise, one of {', '.join(sorted(names))}."
+            raise UsageError(message, help=advice, code="needs_exercise")
         exercise = names.pop()
     elif exercise == "quiz":
         raise UsageError(
@@ -126,11 +124,8 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
                 return _of(inside[0], item)
     place = _cut(Path(file)) or _lying(results, student, file)
     if place is None:
-        raise NotFoundError(
-            f"There is no file {file}.",
-            help=f"Name it as {command('grade', 'assign', results.folder)} lists it, or by its path.",
-            code="file_not_found",
-        )
+        advice = f"Name it as {command('grade', 'assign', results.folder)} lists it, or by its path."
+        raise NotFoundError(f"There is no file {file}.", help=advice, code="file_not_found")
     return Assignment(student, exercise, file, *place, times)
 
 

@@ -50,11 +50,8 @@ def taken_back(out: Path) -> Iterator[ClaimedName]:
 def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
     """The gradebook of a new run or, with ``resume``, of an earlier one, opened for writing."""
     if out.resolve().is_relative_to(submissions.resolve()):
-        raise UsageError(
-            f"--out {out} lies among the submissions.",
-            help="Name a folder elsewhere.",
-            code="out_inside_submissions",
-        )
+        message = f"--out {out} lies among the submissions."
+        raise UsageError(message, help="Name a folder elsewhere.", code="out_inside_submissions")
     path = out / BOOK
     if resume and path.exists():
         return Gradebook(path, writing=True)
@@ -90,11 +87,9 @@ def make_folder(out: Path, *, exist_ok: bool = True) -> None:
     except FileExistsError:
         raise
     except OSError as error:
-        raise MissingCapabilityError(
-            f"{out} cannot be made: {error.strerror}.",
-            help="Name a folder that can be written.",
-            code="read_only",
-        ) from None
+        message = f"{out} cannot be made: {error.strerror}."
+        advice = "Name a folder that can be written."
+        raise MissingCapabilityError(message, help=advice, code="read_only") from None
 
 
 def export_all(out: Path, results: Results) -> None:

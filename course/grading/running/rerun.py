@@ -194,11 +194,9 @@ def _graders(results: Results, catalog: Catalog, options: RerunOptions) -> tuple
     sha256 = wanted[-1].options["snapshot"] if wanted else None
     snapshot = kept(book, sha256, catalog.content, options.accepted)
     if snapshot is None:
-        raise NotFoundError(
-            f"The gradebook has no graders of a run or a snapshot {against!r}.",
-            help="`course grade log` lists the runs and their snapshots.",
-            code="snapshot_not_found",
-        )
+        message = f"The gradebook has no graders of a run or a snapshot {against!r}."
+        advice = "`course grade log` lists the runs and their snapshots."
+        raise NotFoundError(message, help=advice, code="snapshot_not_found")
     return snapshot, wanted[-1].options
 
 

@@ -227,11 +227,9 @@ def grade_class(
     _exercises(catalog, options.exercises)
     members = _members(folder, options)
     if among_graders(folder, catalog.content):
-        raise UsageError(
-            f"{folder} lies among the course's own exercises and graders.",
-            help="Move the submissions elsewhere: what lies there is kept and run as part of the graders.",
-            code="submissions_among_graders",
-        )
+        message = f"{folder} lies among the course's own exercises and graders."
+        advice = "Move the submissions elsewhere: what lies there is kept and run as part of the graders."
+        raise UsageError(message, help=advice, code="submissions_among_graders")
     started = time.monotonic()
     with (
         taken_back(out) as taken,
@@ -601,11 +599,9 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
     if options.only:
         unknown = sorted(set(options.only) - {student.name for student in found.students})
         if unknown:
-            raise UsageError(
-                f"{folder} has no student {unknown[0]!r}.",
-                help="--only takes the name of a student's folder.",
-                code="student_not_found",
-            )
+            message = f"{folder} has no student {unknown[0]!r}."
+            advice = "--only takes the name of a student's folder."
+            raise UsageError(message, help=advice, code="student_not_found")
     return found
 
 
@@ -614,9 +610,6 @@ def _seed(book: Gradebook, options: RunOptions) -> int:
         return options.seed if options.seed is not None else secrets.randbits(31)
     recorded = Results(book).seed
     if options.seed not in (None, recorded):
-        raise UsageError(
-            f"This gradebook was begun with --seed {recorded}.",
-            help="Leave --seed out to go on, or grade into a new folder.",
-            code="other_seed",
-        )
+        advice = "Leave --seed out to go on, or grade into a new folder."
+        raise UsageError(f"This gradebook was begun with --seed {recorded}.", help=advice, code="other_seed")
     return recorded

@@ -425,11 +425,9 @@ def _open(imports: tuple[str, ...], terms: Terms, processor: int | None) -> tupl
     try:
         return open_sandbox(imports, at_least=lowest, at_most=highest, processor=processor)
     except IsolationError as error:
-        raise MissingCapabilityError(
-            f"This machine cannot run submissions at protection level {lowest}: {error}.",
-            help="`course doctor` says what would raise the level.",
-            code="protection_level",
-        ) from None
+        message = f"This machine cannot run submissions at protection level {lowest}: {error}."
+        advice = "`course doctor` says what would raise the level."
+        raise MissingCapabilityError(message, help=advice, code="protection_level") from None
 
 
 def _choose(processor: int | None) -> int | None:
@@ -474,11 +472,9 @@ def report_of(exercise: Exercise, catalog: Catalog, submission: Submission) -> R
     """The report on a submission. NotFoundError: the exercise has none; UngradableError: the submission
     cannot be loaded, or ended it; MissingCapabilityError: none can be run on this machine."""
     if not has_report(exercise):
-        raise NotFoundError(
-            f"The exercise {exercise.id} has no report.",
-            help=f"See what its checks say: course check {exercise.id}",
-            code="report_not_found",
-        )
+        message = f"The exercise {exercise.id} has no report."
+        advice = f"See what its checks say: course check {exercise.id}"
+        raise NotFoundError(message, help=advice, code="report_not_found")
     module = companion(exercise.id, FILE.removesuffix(".py"))
     try:
         with GradingSession(exercise, catalog, terms=Terms(timeout=60.0)) as session:

@@ -59,10 +59,7 @@ def where_it_hangs(handle: Handle, begun: bytes, main: str, source: bytes) -> St
     seen = [line for line in lines if type(line) is int] if isinstance(lines, list) else []
     head = _loop_around(text, seen or [failure.line])
     return StudentFailure(
-        "timeout",
-        type=LOOP if head else "",
-        line=head or failure.line,
-        traceback=failure.traceback,
+        "timeout", type=LOOP if head else "", line=head or failure.line, traceback=failure.traceback
     )
 
 

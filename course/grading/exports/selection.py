@@ -92,17 +92,13 @@ class Selection:
     def each(self) -> Iterator[Effective]:
         """The results, ordered by student and exercise; missing ones are noted on the way."""
         left_out = set(self.written.unmatched)
-        for found in self.results.all():
-            effective = found
-            if effective.exercise not in self.exercises or effective.student in left_out:
+        for one in self.results.all():
+            if one.exercise not in self.exercises or one.student in left_out:
                 continue
-            if effective.missing:
-                if self.zeros:
-                    effective = replace(effective, score=0.0)
-            elif effective.score is None and not effective.waiting:
-                self.written.without_grade.append(f"{effective.student} {effective.exercise}")
+            if one.score is None and not (one.missing or one.waiting):
+                self.written.without_grade.append(f"{one.student} {one.exercise}")
             self.written.rows += 1
-            yield effective
+            yield replace(one, score=0.0) if self.zeros and one.missing else one
 
 
 def select(
@@ -135,8 +131,10 @@ def select(
     people: dict[str, Person] = {}
     key = " or ".join(needs.columns) if needs else ""
     if results.roster is not None:
-        if needs is not None and not options.partial:
-            _has_column(results.roster, needs)
+        # A roster in which nobody has the platform's key: a list of all students would hide that.
+        if needs is not None and not options.partial and not _has_any(results.roster, needs):
+            message = f"{results.roster.called} {needs.absent()}. Nothing was written."
+            raise MissingCapabilityError(message, help=needs.give, code="unmatched_students")
         people, unmatched = results.roster.match(results.students(), results.downloads)
         if usable is not None:
             keyless = [student for student, person in people.items() if not usable(person)]
@@ -165,11 +163,8 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
             and neither a score by hand nor ``zeros`` says that it is worth 0.
     """
     left_out = set(selection.written.unmatched)
-    unread = {
-        item.student
-        for item in selection.results.all()
-        if item.waiting and item.exercise in selection.exercises
-    }
+    asked = [item for item in selection.results.all() if item.exercise in selection.exercises]
+    unread = {item.student for item in asked if item.waiting}
     waiting = sorted(map(repr, (selection.results.waiting | unread) - left_out))
     if waiting:
         are = "1 student is" if len(waiting) == 1 else f"{len(waiting)} students are"
@@ -183,8 +178,8 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
         return
     unseen = [
         f"{item.student!r} {item.exercise} ({item.verdict.error.code if item.verdict.error else 'no reason'})"
-        for item in selection.results.all()
-        if item.unsettled and item.exercise in selection.exercises and item.student not in left_out
+        for item in asked
+        if item.unsettled and item.student not in left_out
     ]
     if unseen:
         raise MissingCapabilityError(
@@ -216,11 +211,8 @@ def is_part(results: Results, options: ExportOptions) -> bool:
     return options.partial and bool(results.unmatched(results.students()))
 
 
-def _has_column(roster: Roster, needs: Needs) -> None:
-    """Refuse a roster in which nobody has the platform's key: a list of all students would hide that."""
-    if not any(getattr(person, name) for person in roster.people for name in needs.columns):
-        message = f"{roster.called} {needs.absent()}. Nothing was written."
-        raise MissingCapabilityError(message, help=needs.give, code="unmatched_students")
+def _has_any(roster: Roster, needs: Needs) -> bool:
+    return any(getattr(person, name) for person in roster.people for name in needs.columns)
 
 
 def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapabilityError:

@@ -68,12 +68,6 @@ def _masked(packed: bytes, salt: bytes) -> bytes:
     return _MASK + salt + mixed.to_bytes(len(packed))
 
 
-def _unmasked(stored: bytes) -> bytes:
-    if stored[:1] != _MASK:
-        return stored
-    return _masked(stored[1 + _SALT :], stored[1 : 1 + _SALT])[1 + _SALT :]
-
-
 T = TypeVar("T")
 _CHECKPOINT_S = 5.0  # the most that a power cut costs
 
@@ -168,29 +162,23 @@ class Gradebook:
 
     def set_exercises(self, exercises: Iterable[GradedExercise]) -> None:
         """Note the exercises that are graded; earlier ones stay."""
+        rows = [msgspec.structs.astuple(exercise) for exercise in exercises]
         with self._transaction():
-            self._db.executemany(
-                row_into("exercises", "INSERT OR REPLACE"),
-                [msgspec.structs.astuple(exercise) for exercise in exercises],
-            )
+            self._db.executemany(row_into("exercises", "INSERT OR REPLACE"), rows)
 
     def exercises(self) -> tuple[GradedExercise, ...]:
         """The graded exercises, in the order of the course."""
+        query = "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
         with explained(self.path):
-            rows = self._db.execute(
-                "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
-            )
-            return tuple(_as(GradedExercise, row) for row in rows)
+            return tuple(_as(GradedExercise, row) for row in self._db.execute(query))
 
     # -- students -------------------------------------------------------------------------------------
 
     def set_students(self, students: Mapping[str, PlatformIdentity]) -> None:
         """Note the students' identities in the system they were downloaded from."""
+        rows = [(name, msgspec.json.encode(who).decode()) for name, who in students.items()]
         with self._transaction():
-            self._db.executemany(
-                row_into("students", "INSERT OR REPLACE"),
-                [(name, msgspec.json.encode(who).decode()) for name, who in students.items()],
-            )
+            self._db.executemany(row_into("students", "INSERT OR REPLACE"), rows)
 
     def students(self) -> dict[str, PlatformIdentity]:
         """The students' identities in the system they were downloaded from; empty for plain folders."""
@@ -337,7 +325,10 @@ class Gradebook:
         if not rows:
             return None
         try:
-            files = zlib.decompressobj().decompress(_unmasked(rows[0][0]), _MOST_UNPACKED)
+            stored = rows[0][0]
+            if stored[:1] == _MASK:
+                stored = _masked(stored[1 + _SALT :], stored[1 : 1 + _SALT])[1 + _SALT :]
+            files = zlib.decompressobj().decompress(stored, _MOST_UNPACKED)
             return msgspec.msgpack.decode(files, type=dict[str, bytes])
         except (zlib.error, msgspec.DecodeError, TypeError):
             raise _failed_checksum(f"The submission {sha256[:12]}", self.path) from None
@@ -467,11 +458,10 @@ class _State(msgspec.Struct):
 
 def _about(student: str | None, exercise: str | None) -> tuple[str, tuple[str, ...]]:
     """A condition on student and exercise, with its parameters; empty where both are None."""
-    asked = [
-        (name, value) for name, value in (("student", student), ("exercise", exercise)) if value is not None
-    ]
-    where = " AND ".join(f"{name} = ?" for name, _ in asked)
-    return (f" WHERE {where}" if asked else ""), tuple(value for _, value in asked)
+    asked = {"student = ?": student, "exercise = ?": exercise}
+    asked = {condition: value for condition, value in asked.items() if value is not None}
+    where = f" WHERE {' AND '.join(asked)}" if asked else ""
+    return where, tuple(map(str, asked.values()))
 
 
 #: Tables with contents that the seal does not cover: what names a row of them, and how it is called.

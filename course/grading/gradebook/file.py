@@ -29,8 +29,8 @@ from course.errors import CourseError, IntegrityError, MissingCapabilityError, N
 from course.printable import command, one_line
 from course.strangers import no_programs
 
-#: 2 had no seal; 3 had no digests of rows, no snapshots and no journal; 4 did not know who waits. All can be
-#: read.
+#: 2 had no seal; 3 had no digests of rows, no snapshots, no journal, and did not know who waits. These can be
+#: read; 4 was never released.
 FORMAT_VERSION = 5
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
@@ -212,19 +212,14 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
     kind = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
     if kind in {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}:
         return UsageError(
-            f"Another run is writing {path}.",
-            help="Wait for it to end.",
-            code="gradebook_locked",
+            f"Another run is writing {path}.", help="Wait for it to end.", code="gradebook_locked"
         )
     # SQLITE_ERROR: a table or a column that our statements name is not there.
     if kind in {sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}:
         return IntegrityError(f"{path} is damaged: {error}.", help=rescue(path))
     if kind == sqlite3.SQLITE_FULL:
-        message, fix = (
-            f"The disk is full: {path} cannot grow.",
-            "Make room, then give the command again (a run with --resume).",
-        )
-        code = "disk_full"
+        message, code = f"The disk is full: {path} cannot grow.", "disk_full"
+        fix = "Make room, then give the command again (a run with --resume)."
     elif kind in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}:
         message, code = f"{path} cannot be written.", "read_only"
         fix = "Make the folder writable, or copy it somewhere that is."
@@ -236,7 +231,9 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
 def create(path: Path) -> None:
     """An empty gradebook, made under another name first: a run killed here leaves none, not half of one. It
     is a UsageError if another run made one meanwhile."""
-    draft = _draft(path)
+    # A name that no other process uses; a killed run's name is reused only if its process is gone.
+    names = (f"{path.stem}.new-{os.getpid()}-{number}" for number in itertools.count())
+    draft = next(draft for draft in map(path.with_name, names) if not draft.exists())
     try:
         with explained(path), contextlib.closing(sqlite3.connect(draft)) as db:
             _know_digests(db)
@@ -247,15 +244,6 @@ def create(path: Path) -> None:
         _publish(draft, path)
     finally:
         draft.unlink(missing_ok=True)
-
-
-def _draft(path: Path) -> Path:
-    """A name that no other process uses; a killed run's name is reused only if its process is gone."""
-    for number in itertools.count():
-        draft = path.with_name(f"{path.stem}.new-{os.getpid()}-{number}")
-        if not draft.exists():
-            return draft
-    raise AssertionError  # count() does not end
 
 
 def _publish(draft: Path, path: Path) -> None:

@@ -554,11 +554,8 @@ def must_have(results: Results, student: str) -> None:
 def _maximum(results: Results, student: str, exercise: str) -> float:
     """The exercise's maximum; also checks that student and exercise exist."""
     graded = next(results.book.results(student, exercise), None)
-    noted = next((item for item in results.exercises() if item.id == exercise), None)
-    if graded is None and noted is None:
-        raise no_exercise(exercise, [item.id for item in results.exercises()])
+    most = {item.id: item.max_points for item in results.exercises()}
+    if graded is None and exercise not in most:
+        raise no_exercise(exercise, list(most))
     must_have(results, student)
-    if noted is not None:
-        return noted.max_points
-    assert graded is not None
-    return graded.verdict.max_score
+    return most[exercise] if exercise in most or graded is None else graded.verdict.max_score

@@ -233,7 +233,12 @@ def read_roster(path: Path) -> Roster:
         if "student" in lower and set(lower) <= set(COLUMNS):
             reader.fieldnames = headings = lower
         kind, columns = _kind(path, headings)
-        rows = [_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values()))]
+        # A row of blanks is none.
+        rows = [
+            _cells(path, reader.line_num, row)
+            for row in reader
+            if any(cell.strip() if isinstance(cell, str) else cell for cell in row.values())
+        ]
     except csv.Error as error:
         raise _wrong(path, f"line {reader.line_num + 1}: {error}") from None
     found = [(person, line) for row, line in rows if (person := kind(path, line, row)) is not None]
@@ -301,10 +306,6 @@ def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
     if unknown:
         raise _wrong(path, f"the heading {unknown[0]!r} is not one of {', '.join(COLUMNS)}")
     return _from_ours, {name: name for name in COLUMNS}
-
-
-def _some(value: object) -> bool:
-    return bool(value.strip()) if isinstance(value, str) else bool(value)
 
 
 def _cells(path: Path, line: int, row: dict[str, str | None]) -> tuple[dict[str, str], int]:

@@ -59,17 +59,13 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
         make_folder(out, exist_ok=False)
     except FileExistsError:
         # A run that was killed before it made its gradebook leaves the folder and perhaps the draft.
-        begun = (
-            resume and out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
-        )
-        if not begun:
+        there = out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
+        if not (resume and there):
             what = "has no gradebook" if resume and out.is_dir() else "exists already"
-            there = ", or add --resume to finish the run that is there" if path.exists() else ""
-            raise UsageError(
-                f"{out} {what}; nothing was touched.",
-                help=rescue(path, "Name the folder of the run.") if resume else f"Name a new folder{there}.",
-                code="out_exists",
-            ) from None
+            more = ", or add --resume to finish the run that is there" if path.exists() else ""
+            advice = rescue(path, "Name the folder of the run.") if resume else f"Name a new folder{more}."
+            message = f"{out} {what}; nothing was touched."
+            raise UsageError(message, help=advice, code="out_exists") from None
         for draft in out.iterdir():
             draft.unlink(missing_ok=True)
     return Gradebook(path, create=True, writing=True)
@@ -160,9 +156,8 @@ def note_looked(
     in it."""
     looked = book.looked()
     if looked is None:
-        looked = {
-            name: Looked(whole=True) for name in (*book.exercise_ids(), *(one.id for one in book.exercises()))
-        }
+        known = (*book.exercise_ids(), *(one.id for one in book.exercises()))
+        looked = {name: Looked(whole=True) for name in known}
     with explained(book.path):
         without = msgspec.json.decode(book.meta().get("without_work", "[]"), type=list[str])
     new = others - {*book.student_ids(), *without}

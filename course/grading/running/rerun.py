@@ -27,6 +27,7 @@ from course.grading.running.run import (
     Ungraded,
     broken_checks,
     graded_exercises,
+    ungraded,
     unjudged,
 )
 from course.grading.running.snapshot import Snapshot, Unpacked, fresh, frozen, kept
@@ -118,11 +119,7 @@ class Regraded(msgspec.Struct, frozen=True):
 
 
 def rerun(
-    results: Results,
-    catalog: Catalog,
-    options: RerunOptions,
-    *,
-    grade: GradeAll = grade_all,
+    results: Results, catalog: Catalog, options: RerunOptions, *, grade: GradeAll = grade_all
 ) -> Regraded:
     """Regrade the submissions in a gradebook.
 
@@ -147,9 +144,7 @@ def rerun(
             broken += broken_checks(after)
             change, error = _change(before, after), after.verdict.error
             if after.verdict.state == "grader_error" and error is not None:
-                troubled.append(
-                    Ungraded(after.student, after.exercise, "grader_error", error.code, error.message)
-                )
+                troubled.append(ungraded(after, error))
             elif change is not None:
                 changes.append(change)
     return Regraded(

@@ -51,7 +51,7 @@ from course.printable import one_line
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
-from course.scoring.verdict import OURS, format_points
+from course.scoring.verdict import OURS, Problem, format_points
 
 GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
@@ -125,16 +125,12 @@ class Summary:
 
     def count(self, results: Results) -> None:
         there = set(results.book.exercise_ids())
-        self.pass_marks = [
-            (item.pass_share * item.max_points, item.max_points)
-            for item in results.exercises()
-            if item.id in there
-        ]
+        graded = [item for item in results.exercises() if item.id in there]
+        self.pass_marks = [(item.pass_share * item.max_points, item.max_points) for item in graded]
         waiting = {effective.student for effective in results.all() if effective.waiting}
         known = (name for name in results.absent() if name not in waiting)
-        self.missing = [
-            name for name in known if all(results.has_looked(name, id_) for id_ in results.looked or ())
-        ]
+        looked = results.looked or ()
+        self.missing = [name for name in known if all(results.has_looked(name, id_) for id_ in looked)]
         self.strangers = results.unmatched(results.students())
         if results.roster is not None and self.strangers:
             self.compared = results.roster.compared(self.strangers, results.downloads)
@@ -151,11 +147,12 @@ class Summary:
                 self.levels[verdict.isolation] += 1
             broken += broken_checks(effective)
             if verdict.error is not None and not settled:
-                error = verdict.error
-                self.troubled.append(
-                    Ungraded(effective.student, effective.exercise, verdict.state, error.code, error.message)
-                )
+                self.troubled.append(ungraded(effective, verdict.error))
         self.unjudged = unjudged(broken)
+
+
+def ungraded(result: Effective, error: Problem) -> Ungraded:
+    return Ungraded(result.student, result.exercise, result.verdict.state, error.code, error.message)
 
 
 def broken_checks(result: Effective) -> list[tuple[str, str, str]]:
@@ -167,9 +164,7 @@ def broken_checks(result: Effective) -> list[tuple[str, str, str]]:
 def unjudged(broken: Iterable[tuple[str, str, str]]) -> tuple[str, ...]:
     """A sentence about each of these checks, the most frequent first."""
     found = Counter(broken).most_common()
-    return tuple(
-        f"{exercise} {check}, {count} of the results: {where}" for (exercise, check, where), count in found
-    )
+    return tuple(f"{task} {check}, {count} of the results: {where}" for (task, check, where), count in found)
 
 
 #: The name of a quiz record among the submissions in a gradebook.
@@ -234,9 +229,7 @@ def grade_class(
     with (
         taken_back(out) as taken,
         begin(out, folder, resume=options.resume) as book,
-        frozen(
-            _begun_with(book, options, catalog) or fresh(catalog.content), options.exercises or None
-        ) as graders,
+        frozen(_graders(book, options, catalog), options.exercises or None) as graders,
     ):
         before = counting(Results(book)) if options.resume else {}
         run = _Run(members, graders, folder, options, book)
@@ -275,10 +268,10 @@ def _lower(before: Scores, now: Scores) -> Iterator[str]:
             yield f"{student} {exercise}: {format_points(score)} before, {now_points} now"
 
 
-def _begun_with(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snapshot | None:
-    """The graders of a resumed run; None for a new run, or one of an older format."""
+def _graders(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snapshot:
+    """The graders of a resumed run; of a new one, or one of an older format, those of now."""
     sha256 = book.run_options().get("snapshot") if options.resume else None
-    return kept(book, sha256, catalog.content, options.accepted)
+    return kept(book, sha256, catalog.content, options.accepted) or fresh(catalog.content)
 
 
 def edited_since(results: Results, catalog: Catalog) -> list[str]:
@@ -297,12 +290,7 @@ class _Run:
     """One run over a class, with a gradebook to write to."""
 
     def __init__(
-        self,
-        members: ClassList,
-        graders: Unpacked,
-        folder: Path,
-        options: RunOptions,
-        book: Gradebook,
+        self, members: ClassList, graders: Unpacked, folder: Path, options: RunOptions, book: Gradebook
     ) -> None:
         only = options.only
         self._students = [one for one in members.students if not only or one.name in only]

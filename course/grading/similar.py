@@ -7,6 +7,7 @@ few right solutions.
 """
 
 import ast
+import contextlib
 import hashlib
 import math
 import os
@@ -15,7 +16,6 @@ from collections import Counter, deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Self
 
 import msgspec
 
@@ -86,7 +86,10 @@ def fingerprints(source: bytes) -> Prints | None:
         run = min(RUN, len(kinds))
         if run < _SHORTEST:
             continue
-        for number, start in _winnowed([_hash(kinds[i : i + run]) for i in range(len(kinds) - run + 1)]):
+        runs = ("\0".join(kinds[i : i + run]).encode() for i in range(len(kinds) - run + 1))
+        # A hash that is the same in every process.
+        hashes = [int.from_bytes(hashlib.blake2b(one, digest_size=6).digest(), "little") for one in runs]
+        for number, start in _winnowed(hashes):
             lines = [line for _, line in walked[start : start + run]]
             marks.setdefault(number, set()).add((min(lines), max(lines)))
     found = {number: tuple(sorted(places)) for number, places in marks.items()}
@@ -95,10 +98,9 @@ def fingerprints(source: bytes) -> Prints | None:
 
 def _parts(tree: ast.Module) -> Iterator[ast.AST]:
     """Functions and classes of a module, each by itself: their order means nothing. The rest comes last."""
-    definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     rest = ast.Module([], [])
     for statement in tree.body:
-        if isinstance(statement, definitions):
+        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             yield statement
         else:
             rest.body.append(statement)
@@ -130,11 +132,6 @@ def _kind(node: ast.AST) -> str:
     return type(node).__name__
 
 
-def _hash(kinds: list[str]) -> int:
-    """A hash that is the same in every process."""
-    return int.from_bytes(hashlib.blake2b("\0".join(kinds).encode(), digest_size=6).digest(), "little")
-
-
 def _winnowed(hashes: list[int]) -> Iterator[tuple[int, int]]:
     """The smallest hash of every window, of equal ones the rightmost; each once."""
     last = -1
@@ -147,23 +144,17 @@ def _winnowed(hashes: list[int]) -> Iterator[tuple[int, int]]:
             yield smallest, at
 
 
-class Parser:
+class Parser(Servant):
     """A process that fingerprints sources; started again if one of them kills it."""
 
     def __init__(self) -> None:
-        self._servant = Servant("course.grading.similar", wall_s=_WALL_S)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._servant.close()
+        super().__init__("course.grading.similar", wall_s=_WALL_S)
 
     def __call__(self, source: bytes) -> Prints | None:
         """The fingerprints of a source; None if it is not Python, takes too long or is too long."""
         if len(source) > LONGEST:
             return None
-        frame = self._servant.ask(source)
+        frame = self.ask(source)
         return msgspec.msgpack.decode(frame, type=Prints | None) if frame is not None else None
 
 
@@ -255,18 +246,15 @@ def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, a
         NotFoundError: no submission of such an exercise was graded.
     """
     found = Similar()
-    graded = [
-        item.id for item in results.exercises() if item.id != QUIZ and item.id in catalog.exercise_ids()
-    ]
+    known = set(catalog.exercise_ids()) - {QUIZ}
+    graded = [item.id for item in results.exercises() if item.id in known]
     unknown = [name for name in exercises if name not in graded]
     if unknown:
         message = f"The gradebook has no code for the exercise {unknown[0]!r}."
         raise NotFoundError(message, help=f"It has {', '.join(graded) or 'none'}.", code="exercise_not_found")
-    with Parser() as parse:
+    with contextlib.closing(Parser()) as parse:
         shipped = _shipped(catalog, parse) if graded else {}
-        for name in graded:
-            if exercises and name not in exercises:
-                continue
+        for name in (name for name in graded if not exercises or name in exercises):
             exercise = catalog.exercise(name)
             documents = list(_submissions(results, exercise, parse, found))
             documents += _own(catalog, exercise, shipped, parse)
@@ -375,7 +363,9 @@ def _pairs(exercise: str, documents: list[Document], ignored: set[int], at_least
         share = sum(weights[mark] for mark in shared) / smaller if smaller else 0.0
         copy = first.prints.whole == second.prints.whole
         if share >= at_least and (copy or len(shared) >= _FEWEST):
-            yield _pair(exercise, first, second, min(share, 1.0), shared)
+            passages = sorted((first.prints.marks[mark][0], second.prints.marks[mark][0]) for mark in shared)
+            lines = {line for (start, end), _ in passages for line in range(start, end + 1)}
+            yield Pair(exercise, first, second, min(share, 1.0), tuple(passages), len(lines))
 
 
 def _candidates(documents: list[Document], having: dict[int, list[int]]) -> set[tuple[int, int]]:
@@ -396,12 +386,6 @@ def _candidates(documents: list[Document], having: dict[int, list[int]]) -> set[
     found = {pair for pair, count in common.items() if count >= _FEWEST}
     copies = ((number, other) for number, other in enumerate(first) if number != other)
     return found | {(min(pair), max(pair)) for pair in copies}
-
-
-def _pair(exercise: str, first: Document, second: Document, share: float, shared: list[int]) -> Pair:
-    passages = sorted((first.prints.marks[mark][0], second.prints.marks[mark][0]) for mark in shared)
-    lines = {line for (start, end), _ in passages for line in range(start, end + 1)}
-    return Pair(exercise, first, second, share, tuple(passages), len(lines))
 
 
 # ---
@@ -428,13 +412,11 @@ def _sides(pair: Pair) -> Iterator[tuple[Document, list[tuple[int, str, bool, li
         begins: dict[int, list[int]] = {}
         for at, block in enumerate(blocks, 1):
             begins.setdefault(block[side][0], []).append(at)
-        yield (
-            document,
-            [
-                (number, line.expandtabs(4), number in marked and bool(line.strip()), begins.get(number, []))
-                for number, line in enumerate(document.source.splitlines(), 1)
-            ],
-        )
+        rows = []
+        for number, line in enumerate(document.source.splitlines(), 1):
+            theirs = number in marked and bool(line.strip())
+            rows.append((number, line.expandtabs(4), theirs, begins.get(number, [])))
+        yield document, rows
 
 
 #: So many passages may be open at one place; a file with all of it on one line has thousands there.

@@ -113,11 +113,9 @@ def _context(settings: dict[str, Any]) -> ssl.SSLContext:
     if missing == ["key"] and "PRIVATE KEY" in _text(str(settings["cert"])):
         missing = []  # one file may hold both
     if missing:
-        wanted = " and ".join(_SETTINGS[name][1] for name in missing)
-        variables = ", ".join(_SETTINGS[name][0] for name in missing)
-        raise _problem(
-            f"A tls:// scheduler needs {wanted}, and Dask's settings name none.", f"Set {variables}."
-        )
+        variables, wanted = zip(*(_SETTINGS[name] for name in missing), strict=True)
+        message = f"A tls:// scheduler needs {' and '.join(wanted)}, and Dask's settings name none."
+        raise _problem(message, f"Set {', '.join(variables)}.")
     for name, (variable, what) in _SETTINGS.items():
         path = str(settings[name] or settings["cert"])
         if "\n" in path:  # Dask takes the text of a certificate in place of a file
@@ -125,10 +123,8 @@ def _context(settings: dict[str, Any]) -> ssl.SSLContext:
         try:
             Path(path).read_bytes()
         except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise _problem(
-                f"{what.capitalize()} cannot be read: {path}: {reason}.", f"Set {variable}."
-            ) from None
+            message = f"{what.capitalize()} cannot be read: {path}: {(error.strerror or str(error)).lower()}."
+            raise _problem(message, f"Set {variable}.") from None
     from distributed import Security
 
     try:
@@ -380,7 +376,9 @@ def _outcome(future: Any, *, connected: bool) -> Outcome:
         return _scheduler_gone()
     if isinstance(error, KilledWorker):
         return LostBatch(int(getattr(error, "allowed_failures", 0)) + 1)
-    cause = next((e for e in _chain(error) if isinstance(e, ImportError | AttributeError)), None)
+    cause = error
+    while cause is not None and not isinstance(cause, ImportError | AttributeError):
+        cause = cause.__cause__ or cause.__context__
     if cause is not None:
         message = f"The cluster's scheduler or a worker has no such course: {cause}."
         advice = "Install the same checkout of the course where the scheduler and the workers run."
@@ -392,9 +390,3 @@ def _scheduler_gone() -> MissingCapabilityError:
     message = "The cluster's scheduler is gone; all results so far are kept."
     advice = "Start it again, then run the same command with --resume."
     return MissingCapabilityError(message, help=advice, code="no_scheduler")
-
-
-def _chain(error: BaseException | None) -> Iterator[BaseException]:
-    while error is not None:
-        yield error
-        error = error.__cause__ or error.__context__

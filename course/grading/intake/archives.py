@@ -130,11 +130,9 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
     listed = manifest.get("files", {})
     expected = listed.get(name, listed.get(raw))
     if manifest and expected != hashlib.sha256(content).hexdigest():
-        raise RefusedError(
-            "checksum_mismatch",
-            f"{quoted(name)} in {quoted(path.name)} is not the file that `course submit` put there.",
-            "Make the archive again with `course submit` and upload it unchanged.",
-        )
+        message = f"{quoted(name)} in {quoted(path.name)} is not the file that `course submit` put there."
+        advice = "Make the archive again with `course submit` and upload it unchanged."
+        raise RefusedError("checksum_mismatch", message, advice)
     notes = tuple(_notes(path, name, raw, wanted, exercise))
     copies = tuple(held.names[other] for other in wanted)
     return ArchiveContent(raw, content, notes, copies, _written(manifest.get("written_with")))
@@ -293,9 +291,8 @@ def _listed(path: Path) -> int:
 
 
 def _refused(path: Path, why: str) -> RefusedError:
-    return RefusedError(
-        "refused_archive", f"{quoted(path.name)}: {why}.", "Hand in the zip that `course submit` writes."
-    )
+    advice = "Hand in the zip that `course submit` writes."
+    return RefusedError("refused_archive", f"{quoted(path.name)}: {why}.", advice)
 
 
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
@@ -347,11 +344,9 @@ def _read_manifest(path: Path, content: bytes) -> dict[str, Any]:
         manifest = json.loads(content)
     match manifest:
         case {"format_version": int(version)} if version > FORMAT_VERSION:
-            raise RefusedError(
-                "newer_format",
-                f"{quoted(path.name)} was written by a newer version of this course.",
-                "Update the course on the machine that grades.",
-            )
+            message = f"{quoted(path.name)} was written by a newer version of this course."
+            advice = "Update the course on the machine that grades."
+            raise RefusedError("newer_format", message, advice)
         case {"format_version": int(), "files": dict(files)} if files or manifest.get("quiz"):
             return dict(manifest)
     raise _refused(path, f"its {MANIFEST} is damaged" if path.name != MANIFEST else "it is damaged")
@@ -463,11 +458,8 @@ class Reader:
 
     def _ask(self, ask: _Request) -> _Reply:
         if self.spent:
-            raise RefusedError(
-                "unreadable",
-                f"{ask.name} was not read: what was handed in with it took all the time for reading.",
-                "Hand in the .py files alone.",
-            )
+            message = f"{ask.name} was not read: what was handed in with it took all the time for reading."
+            raise RefusedError("unreadable", message, "Hand in the .py files alone.")
         # Where the course lies, which need not be text, is nothing to read a file by.
         exercise = ask.exercise and msgspec.structs.replace(ask.exercise, folder="")
         ask = msgspec.structs.replace(ask, exercise=exercise, student=self._student, streamed=self._streamed)
@@ -476,18 +468,15 @@ class Reader:
             if self._student and ask.path not in self._fatal:
                 self._left_s -= self._cpu_s
                 self._fatal |= {ask.path} - {b""}
-            raise RefusedError(
-                "unreadable",
-                f"{ask.name} takes more time or memory to read than any honest file.",
-                "Hand in the .py file, or a notebook of ordinary size.",
-            )
+            message = f"{ask.name} takes more time or memory to read than any honest file."
+            advice = "Hand in the .py file, or a notebook of ordinary size."
+            raise RefusedError("unreadable", message, advice)
         told = msgspec.msgpack.decode(frame, type=_Reply)
         if self._student:
             self._left_s -= told.cpu_s
             self._streamed -= told.streamed
         if told.problem is not None:
-            problem = told.problem
-            raise RefusedError(problem.code, problem.message, problem.help)
+            raise RefusedError(*msgspec.structs.astuple(told.problem))
         return told
 
 

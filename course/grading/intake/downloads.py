@@ -211,13 +211,10 @@ def _names(folder: Path) -> list[str]:
     try:
         found = sorted(os.listdir(os.fsencode(folder)))  # noqa: PTH208 - bytes: a name need not be text
     except OSError as error:
-        raise NotFoundError(
-            f"{folder} is not a folder of submissions: {error.strerror}.",
-            help="Unpack it, and name the folder that holds one folder per student."
-            if folder.is_file()
-            else "Name the folder that holds one folder per student.",
-            code="submissions_not_found",
-        ) from None
+        message = f"{folder} is not a folder of submissions: {error.strerror}."
+        first = "Unpack it, and name" if folder.is_file() else "Name"
+        advice = f"{first} the folder that holds one folder per student."
+        raise NotFoundError(message, help=advice, code="submissions_not_found") from None
     return [name for raw in found if (name := os.fsdecode(raw)) not in IGNORED]
 
 
@@ -226,11 +223,11 @@ def _one_too_high(folder: Path, names: list[str]) -> UsageError | None:
     inner = [folder / name for name in names if (folder / name).is_dir()]
     if len(inner) != 1 or not os.path.isfile(inner[0] / _METADATA):  # noqa: PTH113 - False where it is closed
         return None
-    return UsageError(
-        f"The one folder in {folder} has a {_METADATA}: a download from Gradescope, or a student's work.",
-        help=f"If Gradescope made it, name {str(inner[0])!r}; if a student did, choose --layout folders.",
-        code="mixed_layout",
+    message = (
+        f"The one folder in {folder} has a {_METADATA}: a download from Gradescope, or a student's work."
     )
+    advice = f"If Gradescope made it, name {str(inner[0])!r}; if a student did, choose --layout folders."
+    return UsageError(message, help=advice, code="mixed_layout")
 
 
 def _recognised(folder: Path, names: list[str]) -> str:
@@ -241,7 +238,7 @@ def _recognised(folder: Path, names: list[str]) -> str:
         layout, odd = "moodle", [name for name in folders if name not in moodle]
     elif _METADATA in names:
         layout, odd = "gradescope", [name for name in folders if not _GRADESCOPE.fullmatch(name)]
-    elif canvas and (not folders or any(map(_may_be_handed_in, canvas))):
+    elif canvas and (not folders or any(name.lower().endswith(HANDED_IN) for name in canvas)):
         layout, odd = "canvas", [name for name in names if name not in canvas]
     elif refused := _one_too_high(folder, names):
         raise refused
@@ -255,10 +252,6 @@ def _recognised(folder: Path, names: list[str]) -> str:
     return layout
 
 
-def _may_be_handed_in(name: str) -> bool:
-    return name.lower().endswith(HANDED_IN)
-
-
 def _text(name: str) -> str:
     return os.fsencode(name).decode("utf-8", "backslashreplace")
 
@@ -270,7 +263,7 @@ def _folders(folder: Path, names: list[str]) -> ClassList:
     for raw in names:
         path = folder / raw
         if not (path.is_dir() or path.is_symlink()):
-            if _may_be_handed_in(raw):
+            if raw.lower().endswith(HANDED_IN):
                 found.unrecognised.append(f"{quoted(raw)}: is in no student's folder")
             continue  # such as a class list or notes: not a submission
         name = _text(raw)
@@ -332,19 +325,15 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
         if match["late"] or match["anon_late"]:
             late.add(key)
     for key, items in files.items():
-        if len(spelled[key]) > 1:
-            both = " and ".join(map(quoted, sorted(spelled[key])))
-            found.unrecognised.append(
-                f"user {key} of Canvas is called {both}: whose files these are is unclear"
-            )
+        name, *more = sorted(spelled[key])
+        if more:
+            both = " and ".join(map(quoted, (name, *more)))
+            said = f"user {key} of Canvas is called {both}: whose files these are is unclear"
+            found.unrecognised.append(said)
             continue
-        name = next(iter(spelled[key]))
-        identity = PlatformIdentity("canvas", key, name)
-        place = Place(folder, tuple(items))
+        who, place = PlatformIdentity("canvas", key, name), Place(folder, tuple(items))
         words = tuple(typed.get(key, ()))
-        found.students.append(
-            Student(f"{name}_{key}", place, identity, flagged_late=key in late, typed=words)
-        )
+        found.students.append(Student(f"{name}_{key}", place, who, flagged_late=key in late, typed=words))
     return found
 
 
@@ -383,13 +372,11 @@ def _metadata(path: Path) -> dict[str, Any]:
         content = yaml.load(read_bytes(path, _MAX_METADATA), loader)
     except (OSError, yaml.YAMLError, ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise UsageError(
-            f"{path} cannot be read: {reason}.", help="Download the submissions again.", code="bad_metadata"
-        ) from None
+        message, advice = f"{path} cannot be read: {reason}.", "Download the submissions again."
+        raise UsageError(message, help=advice, code="bad_metadata") from None
     if not isinstance(content, dict) or not all(isinstance(name, str) for name in content):
-        raise UsageError(
-            f"{path} is not what Gradescope writes.", help="Download it again.", code="bad_metadata"
-        )
+        message = f"{path} is not what Gradescope writes."
+        raise UsageError(message, help="Download it again.", code="bad_metadata")
     return content
 
 
@@ -410,10 +397,8 @@ def _created_at(about: Any) -> float | None:
     """The time Gradescope received it, as YAML gave it: a date, or text if the YAML had it quoted."""
     value = about.get(":created_at") if isinstance(about, dict) else None
     if isinstance(value, str):
-        try:
+        with contextlib.suppress(ValueError):
             value = dt.datetime.fromisoformat(value.strip())
-        except ValueError:
-            return None
     if not isinstance(value, dt.datetime):
         return None
     return (value if value.tzinfo else value.replace(tzinfo=dt.UTC)).timestamp()
@@ -462,18 +447,14 @@ def is_clutter(name: str) -> bool:
     return _CLUTTER.fullmatch(name) is not None
 
 
-_SLASH = re.compile("/")
-
-
 def clutter(names: Iterable[str]) -> Callable[[str], bool]:
     """Whether one of these paths lies in something that is no student's work, such as an environment."""
     environments = {name.rpartition("/")[0] for name in names if name.rpartition("/")[2] == _ENVIRONMENT}
     environments.discard("")
 
     def inside(name: str) -> bool:
-        if any(map(is_clutter, name.split("/"))):
-            return True
-        return bool(environments) and any(name[: at.start()] in environments for at in _SLASH.finditer(name))
+        above = (name[: at.start()] for at in re.finditer("/", name)) if environments else ()
+        return any(map(is_clutter, name.split("/"))) or not environments.isdisjoint(above)
 
     return inside
 

@@ -95,11 +95,8 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         found = exact or [item for item in self.deadline if item.exercise == "*"]
         if not found:
             return None
-        days = [
-            item.days
-            for item in self.extension
-            if item.student in student_names and item.exercise in {"*", exercise}
-        ]
+        mine = (item for item in self.extension if item.student in student_names)
+        days = (item.days for item in mine if item.exercise in {"*", exercise})
         return found[0].due.timestamp() + _DAY_S * max([granted_days, *days])
 
     def penalty(self, late_s: float | None, score: float, maximum: float) -> float:
@@ -148,9 +145,8 @@ def parse_policy(text: str, name: str = "The late policy") -> Policy:
     with contextlib.suppress(tomllib.TOMLDecodeError):
         version = toml(text).get("format_version")
         if isinstance(version, int) and version > FORMAT_VERSION:
-            raise MissingCapabilityError(
-                f"{name} is in a newer format ({version}).", help="Update the course.", code="newer_format"
-            )
+            message = f"{name} is in a newer format ({version})."
+            raise MissingCapabilityError(message, help="Update the course.", code="newer_format")
     try:
         document = read_document(Path(name), Policy, text=text)
         _check(document)
@@ -257,10 +253,9 @@ def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
 
 def _once(path: Path, lines: dict[tuple[str, ...], int], line: int, *work: str) -> None:
     """Refuse a second time for the same work: nobody said which counts."""
-    if lines.setdefault(work, line) != line:
-        raise _wrong_times(
-            path, f"{' '.join(map(repr, work))} is in two rows, on lines {lines[work]} and {line}"
-        )
+    if (first := lines.setdefault(work, line)) != line:
+        named = " ".join(map(repr, work))
+        raise _wrong_times(path, f"{named} is in two rows, on lines {first} and {line}")
 
 
 def worksheet_times(
@@ -296,9 +291,8 @@ def _in_words(path: Path, words: str) -> dt.datetime:
         day = int(found["day"] or found["us_day"])
         return dt.datetime(int(found["year"]), month, day, hour, int(found["minute"]))
     except ValueError:
-        raise _wrong_times(
-            path, f"{words!r} is not a time as Moodle writes one in English or German"
-        ) from None
+        why = f"{words!r} is not a time as Moodle writes one in English or German"
+        raise _wrong_times(path, why) from None
 
 
 def _seconds(path: Path, line: int, text: str) -> float:

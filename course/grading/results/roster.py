@@ -297,9 +297,8 @@ def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
         raise _wrong(path, "its first row is empty")
     if "student" not in found:
         listed = one_line(", ".join(headings))
-        raise _wrong(
-            path, f"its first row has no heading 'student', and {listed} are not those of a platform's file"
-        )
+        why = f"its first row has no heading 'student', and {listed} are not those of a platform's file"
+        raise _wrong(path, why)
     if len(found) < len(headings):
         raise _wrong(path, "two columns have one heading")
     unknown = sorted(found - set(COLUMNS))
@@ -359,9 +358,8 @@ def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, C
     for heading in headings:
         if id_ := re.search(r"\(([0-9]+)\)$", heading):
             cells = [(row["ID"], row[heading]) for row in rows]
-            points = [
-                float(cell.replace(",", ".")) for key, cell in cells if not key and _POINTS.fullmatch(cell)
-            ]
+            most = (cell.replace(",", ".") for key, cell in cells if not key and _POINTS.fullmatch(cell))
+            points = [float(cell) for cell in most]
             theirs = {key: cell for key, cell in cells if key and cell}
             found[id_[1]] = Column(heading, points[0] if points else None, theirs)
     return found

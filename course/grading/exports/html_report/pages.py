@@ -318,15 +318,13 @@ def _facts(tally: Tally) -> list[tuple[int, str, str]]:
         (sum(len(item.scores) for item in every), "graded results", ""),
         (sum(item.passed for item in every), "of them pass", ""),
         (sum(item.ungraded for item in every), "could not be graded", "ungraded"),
-    ]
-    more = [
         (sum(item.waiting for item in every), "not graded yet: no run has looked at it", "exercises"),
         (sum(item.missing for item in every), "missing: nothing handed in", "exercises"),
         (sum(item.faults for item in every), "faults of the grader", "ungraded"),
         (tally.overrides.count, "scores set by hand", "overrides"),
         (tally.late.count, "handed in late", "late"),
     ]
-    return [*facts, *(fact for fact in more if fact[0])]
+    return [fact for at, fact in enumerate(facts) if at < 4 or fact[0]]
 
 
 def _middle(scores: Sequence[float]) -> tuple[str, str]:
@@ -515,15 +513,8 @@ def _gathered(checks: list[CheckResult]) -> list[CheckResult]:
         elif check.status is Status.PASS or not check.input is check.actual is check.stdout is None:
             alike[check.id] = [check]
         else:
-            told = (
-                check.status,
-                check.message,
-                check.help,
-                check.blocked_by,
-                check.traceback,
-                check.visibility,
-            )
-            alike.setdefault(told, []).append(check)
+            told = (check.status, check.message, check.help, check.blocked_by, check.traceback)
+            alike.setdefault((*told, check.visibility), []).append(check)
     return [_as_one(same) if len(same) > 1 else same[0] for same in alike.values()]
 
 
@@ -673,9 +664,7 @@ def _cells(row: IndexRow) -> list[str]:
 
 def _remove_others(folder: Path, written: set[str]) -> None:
     """Delete the pages of an earlier class: their numbers may belong to other students now."""
-    if not folder.is_dir():
-        return
-    for path in folder.iterdir():
+    for path in folder.iterdir() if folder.is_dir() else ():
         if _PAGE.fullmatch(path.name) and path.name not in written and _is_ours(path):
             with contextlib.suppress(OSError):
                 path.unlink()

@@ -169,12 +169,11 @@ def _score(bank: Bank, attempt: _Record, which: str) -> Result:
 
 def _inconsistent(message: str, version: str = "") -> UngradableError:
     made = f" The attempt says it was made with version {version!a} of the course." if version else ""
-    return UngradableError(
-        message,
-        help="Ask the student to run `course submit` again and upload the zip unchanged; where the quiz "
-        f"changed in between, grade with the version it was taken with.{made}",
-        code=CODE,
+    advice = (
+        "Ask the student to run `course submit` again and upload the zip unchanged; where the quiz "
+        f"changed in between, grade with the version it was taken with.{made}"
     )
+    return UngradableError(message, help=advice, code=CODE)
 
 
 def _check(marked: MarkedQuestion, seed: int) -> CheckResult:

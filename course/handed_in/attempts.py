@@ -89,10 +89,9 @@ def attempt_in(session: GradingSession, submission: Submission, begin: float, on
     exercise = session.exercise
     known = [check.id for check in session.checks]
     if only and only not in known:
+        message = f"{exercise.id} has no public check called {only!r}."
         raise NotFoundError(
-            f"{exercise.id} has no public check called {only!r}.",
-            help=meant(only, known, f"Known: {', '.join(known)}."),
-            code="check_not_found",
+            message, help=meant(only, known, f"Known: {', '.join(known)}."), code="check_not_found"
         )
     verdict = session.grade(submission, only=[only] if only else ())
     seconds, source = time.perf_counter() - begin, submission.files[exercise.module]

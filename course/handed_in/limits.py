@@ -46,6 +46,5 @@ def read_notebook(path: Path) -> bytes:
             raise UsageError(message, help="Clear its outputs and save it.", code="too_large")
         return path.read_bytes()
     except OSError as error:
-        raise UsageError(
-            f"{path} cannot be read ({error.strerror or error}).", help="Check its permissions."
-        ) from error
+        message = f"{path} cannot be read ({error.strerror or error})."
+        raise UsageError(message, help="Check its permissions.") from error

@@ -267,9 +267,8 @@ class Connection:
                     raise TypeError
                 return systems.SYSTEMS[value.name](**value.params)
             except Exception as error:  # noqa: BLE001 - any parameters may arrive
-                raise wire.WireError(
-                    f"a right-hand side that cannot be built: {type(error).__name__}"
-                ) from None
+                message = f"a right-hand side that cannot be built: {type(error).__name__}"
+                raise wire.WireError(message) from None
         raise wire.WireError("a seed from the worker")
 
     # -- calls ----------------------------------------------------------------------------------------

@@ -408,19 +408,14 @@ def expect_array(
     if t is not None:
         column: Any = (slice(None), *first[1:])
         finding["comparison"] = np.asarray(t, dtype=float), array[column], wanted[column], label, units
-        finding.setdefault(
-            "first_divergence", Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
-        )
+        left = Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
+        finding.setdefault("first_divergence", left)
     finding["diagnose"] = _or_not_finite(float(array[first]), finding.get("diagnose"))
-    short = wanted.size <= 6
-    fail(
-        message,
-        expected=wanted if short else {quantity + "".join(f"[{i}]" for i in first): wanted[first]},
-        actual=array if short else {quantity + "".join(f"[{i}]" for i in first): array[first]},
-        units=units,
-        tolerance=Tolerance(rel=rel or None, abs=abs or None, source=source),
-        **finding,
-    )
+    finding |= {"units": units, "tolerance": Tolerance(rel=rel or None, abs=abs or None, source=source)}
+    if wanted.size <= 6:
+        fail(message, expected=wanted, actual=array, **finding)
+    at = quantity + "".join(f"[{i}]" for i in first)
+    fail(message, expected={at: wanted[first]}, actual={at: array[first]}, **finding)
 
 
 def expect_order(
@@ -446,15 +441,9 @@ def expect_order(
     measured = convergence_order(hs, values) if np.all((values > 0) & np.isfinite(values)) else math.nan
     if not math.fabs(measured - order) <= abs:
         shown = {f"error at h = {h:.3g} s": float(e) for h, e in zip(hs, values, strict=True)}
-        fail(
-            message,
-            expected=order,
-            actual=measured,
-            units="1",
-            tolerance=Tolerance(abs=abs, source=source),
-            input={**(finding.pop("input", None) or {}), **shown},
-            **finding,
-        )
+        finding["input"] = {**(finding.get("input") or {}), **shown}
+        limits = Tolerance(abs=abs, source=source)
+        fail(message, expected=order, actual=measured, units="1", tolerance=limits, **finding)
 
 
 def expect_conserved(
@@ -467,14 +456,9 @@ def expect_conserved(
         off = ~(change <= rel * np.abs(array[0]))
     if off.any():
         worst = float(np.max(np.where(np.isfinite(change), change, math.inf)))
-        fail(
-            message,
-            expected=0.0,
-            actual=worst / float(np.abs(array[0])) if array[0] else math.inf,
-            units=units,
-            tolerance=Tolerance(rel=rel, source=source),
-            **finding,
-        )
+        share = worst / float(np.abs(array[0])) if array[0] else math.inf
+        limits = Tolerance(rel=rel, source=source)
+        fail(message, expected=0.0, actual=share, units=units, tolerance=limits, **finding)
 
 
 def expect_bounded(
@@ -505,14 +489,9 @@ def expect_evaluations(count: int, allowed: Collection[int], *, message: str, **
     """The grader's own count of evaluations is one of the allowed numbers."""
     if count not in allowed:
         finding.setdefault("help", "Count the places where your code calls it, and how often a loop does.")
-        fail(
-            message,
-            expected=list(allowed) if len(allowed) > 1 else next(iter(allowed)),
-            actual=count,
-            quantity=EVALUATIONS,
-            tolerance=Tolerance(abs=0.0, source="counted by the grader"),
-            **finding,
-        )
+        finding |= {"quantity": EVALUATIONS, "tolerance": Tolerance(abs=0.0, source="counted by the grader")}
+        expected = list(allowed) if len(allowed) > 1 else next(iter(allowed))
+        fail(message, expected=expected, actual=count, **finding)
 
 
 def expect_raises(fn: Callable[[], Any], exception: str, *, message: str, **finding: Any) -> None:
@@ -556,13 +535,8 @@ def expect_untouched(
     """
     for name, given, after in zip(names, before, inspected.args_after, strict=True):
         if name and not np.array_equal(given, after):
-            fail(
-                f"The call changed its argument `{name}` in place.",
-                expected={name: given},
-                actual={name: after},
-                diagnose=mutated,
-                **finding,
-            )
+            message = f"The call changed its argument `{name}` in place."
+            fail(message, expected={name: given}, actual={name: after}, diagnose=mutated, **finding)
     if inspected.shared:
         fail("What the call returned is the caller's own array, not a new one.", diagnose=shared, **finding)
 

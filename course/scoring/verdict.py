@@ -160,19 +160,9 @@ def for_student(result: CheckResult) -> CheckResult:
     """
     if result.visibility is Visibility.PUBLIC:
         return result
-    return msgspec.structs.replace(
-        _unspoken(result),
-        input=None,
-        expected=None,
-        actual=None,
-        quantity="",
-        units="",
-        tolerance=None,
-        first_divergence=None,
-        traceback=None,
-        stdout=None,
-        duration_ms=0.0,
-    )
+    none = ("input", "expected", "actual", "tolerance", "first_divergence", "traceback", "stdout")
+    dropped = {"quantity": "", "units": "", "duration_ms": 0.0, **dict.fromkeys(none)}
+    return msgspec.structs.replace(_unspoken(result), **dropped)
 
 
 #: What a student reads about a hidden check without a value, by its status: (diagnosis, message, advice).
@@ -209,20 +199,17 @@ def _unspoken(result: CheckResult) -> CheckResult:
     """A hidden result in fixed words; the student's code could only choose which of five."""
     if result.diagnosis == "MISSING_FUNCTION":
         return result  # known before the code received any input
+    status = result.status
     if result.diagnosis in _OTHER_FORM:
-        return msgspec.structs.replace(
-            result,
-            status=Status.FAIL,
-            diagnosis="OTHER_FORM",
-            message=f"What `{result.task}` returns has not the form that was asked for.",
-            help="Compare it with the README, for everything that it may be called with.",
-        )
-    if result.status not in NO_VALUE:
+        status, diagnosis = Status.FAIL, "OTHER_FORM"
+        message = "What `{}` returns has not the form that was asked for."
+        advice = "Compare it with the README, for everything that it may be called with."
+    elif status in NO_VALUE:
+        diagnosis, message, advice = NO_VALUE[status]
+    else:
         return result
-    diagnosis, message, advice = NO_VALUE[result.status]
-    return msgspec.structs.replace(
-        result, diagnosis=diagnosis, message=message.format(result.task), help=advice
-    )
+    told = {"diagnosis": diagnosis, "message": message.format(result.task), "help": advice}
+    return msgspec.structs.replace(result, status=status, **told)
 
 
 #: Largest verdict as JSON, in bytes: how much one submission may add to a gradebook, a page or a line.

@@ -91,9 +91,8 @@ def _address(named: str) -> str:
         found = None
     address = found.get("address") if isinstance(found, dict) else None
     if not isinstance(address, str):
-        raise UsageError(
-            f"{named} is not a scheduler file.", help="`dask scheduler --scheduler-file` writes one."
-        )
+        message = f"{named} is not a scheduler file."
+        raise UsageError(message, help="`dask scheduler --scheduler-file` writes one.")
     return address
 
 
@@ -177,9 +176,8 @@ def _told(url: str, host: str, port: int, error: Exception) -> CourseError:
     if isinstance(error, ssl.SSLError) and "ALERT" in str(error.reason):
         fix = "Set DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT and ..._KEY to one its authority signed."
         return _problem(f"The scheduler at {url} does not take the certificate of this side.", fix)
-    return _problem(
-        f"What answers at {host}:{port} does not speak TLS.", f"Is the scheduler tcp://{host}:{port}?"
-    )
+    fix = f"Is the scheduler tcp://{host}:{port}?"
+    return _problem(f"What answers at {host}:{port} does not speak TLS.", fix)
 
 
 def _check_plain(url: str, host: str, port: int) -> None:
@@ -316,16 +314,14 @@ def _reach(stack: contextlib.ExitStack, address: str) -> Any:
         advice = "Is it running, can this machine reach it, and has this command the same TLS settings?"
         raise MissingCapabilityError(message, help=advice, code="no_scheduler") from None
     except (ValueError, TypeError) as error:
-        raise UsageError(
-            f"--scheduler {address} is not an address: {error}.", help="It looks like tls://name:8786."
-        ) from None
+        message = f"--scheduler {address} is not an address: {error}."
+        raise UsageError(message, help="It looks like tls://name:8786.") from None
     stack.enter_context(client)
     try:
         client.wait_for_workers(1, timeout=_ANSWER_S)
     except TimeoutError:
-        raise MissingCapabilityError(
-            f"The scheduler at {address} has no workers.", help="Start some first.", code="no_workers"
-        ) from None
+        message = f"The scheduler at {address} has no workers."
+        raise MissingCapabilityError(message, help="Start some first.", code="no_workers") from None
     return client
 
 

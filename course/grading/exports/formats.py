@@ -168,9 +168,8 @@ def export(results: Results, name: str, out: Path, target: Path | None, options:
         MissingCapabilityError: students are missing in the roster, or it cannot be written.
     """
     if name not in FORMATS:
-        raise UsageError(
-            f"--format is {name!r}.", help=f"It takes {', '.join([*FORMATS, AUTOGRADER])}.", code="usage"
-        )
+        message = f"--format is {name!r}."
+        raise UsageError(message, help=f"It takes {', '.join([*FORMATS, AUTOGRADER])}.", code="usage")
     usual, write = FORMATS[name]
     if target is None:
         # The run's own file there is about the whole class, and stays so.

@@ -251,14 +251,12 @@ def _publish(draft: Path, path: Path) -> None:
     try:
         path.hardlink_to(draft)
     except (FileExistsError, FileNotFoundError):
-        raise UsageError(
-            f"Another run is writing {path}.", help="Name another --out.", code="gradebook_locked"
-        ) from None
+        message = f"Another run is writing {path}."
+        raise UsageError(message, help="Name another --out.", code="gradebook_locked") from None
     except OSError:  # a file system without hard links
         if path.exists():
-            raise UsageError(
-                f"{path} exists already; nothing was touched.", help="Name a new folder.", code="out_exists"
-            ) from None
+            message = f"{path} exists already; nothing was touched."
+            raise UsageError(message, help="Name a new folder.", code="out_exists") from None
         draft.replace(path)
 
 
@@ -312,9 +310,8 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         db.execute("SELECT count(*) FROM meta").fetchone()
     kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
     if kept is not None and kept[0] != _digest(db, _SEALED if version < FORMAT_VERSION else _SEALED_NOW):
-        raise IntegrityError(
-            f"{path} is damaged: its content is not what the course wrote.", help=rescue(path)
-        )
+        message = f"{path} is damaged: its content is not what the course wrote."
+        raise IntegrityError(message, help=rescue(path))
     if version < FORMAT_VERSION and writing:
         _keep(db, path, version)
         db.executescript(

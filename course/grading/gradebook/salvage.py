@@ -249,9 +249,8 @@ def salvage(path: Path, target: Path) -> Salvaged:
     if waiting is not None:  # a backup does not know who was graded since
         found["waiting"] = waiting
     if not any(found.values()):
-        raise IntegrityError(
-            f"{path} has no intact row, and there is no backup.", help="Grade the class into a new folder."
-        )
+        message = f"{path} has no intact row, and there is no backup."
+        raise IntegrityError(message, help="Grade the class into a new folder.")
     told.lost = list(_lost(found))
     if told.lost:  # whose results are among it is not known: from now on nothing says who handed in nothing
         found["meta"]["looked",] = ("looked", "{}")

@@ -404,9 +404,8 @@ def _check_unique(path: Path, people: list[tuple[Person, int]]) -> None:
 
 
 def _wrong(path: Path, why: str) -> UsageError:
-    return UsageError(
-        f"{path}: {why}.",
-        help="A roster is what Canvas, Moodle or Gradescope hand out, unchanged, or a CSV file with the "
-        f"columns {', '.join(COLUMNS)}; all but the first are optional.",
-        code="invalid_roster",
+    advice = (
+        "A roster is what Canvas, Moodle or Gradescope hand out, unchanged, or a CSV file with the "
+        f"columns {', '.join(COLUMNS)}; all but the first are optional."
     )
+    return UsageError(f"{path}: {why}.", help=advice, code="invalid_roster")

@@ -97,12 +97,11 @@ def export_all(out: Path, results: Results) -> None:
         write_csv(out / "grades.csv", results, results.all())
         write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
     except MissingCapabilityError as error:
-        raise MissingCapabilityError(
-            error.message,
-            help="The gradebook is complete. Make room, then give the same command again (a run with"
-            " --resume): only this is missing. `course grade export` writes it elsewhere.",
-            code=error.code,
-        ) from None
+        advice = (
+            "The gradebook is complete. Make room, then give the same command again (a run with"
+            " --resume): only this is missing. `course grade export` writes it elsewhere."
+        )
+        raise MissingCapabilityError(error.message, help=advice, code=error.code) from None
 
 
 @contextlib.contextmanager

@@ -199,16 +199,13 @@ class Loading:
 
         Otherwise the first of ``faults`` says why.
         """
-        magics = self._without_magics()
-        loads = self._run()
-        self.faults += [*magics, *self._refused] if loads else []
-        return loads
-
-    def _without_magics(self) -> list[Fault]:
-        """Take IPython's lines out, as of a notebook's cell; they are in files exported from one."""
+        # IPython's lines are taken out, as of a notebook's cell; they are in files exported from one.
         self._source, magics = statements.without_magics(self._source)
         self._source, more = statements.without_shell(self._source)
-        return [Fault("magic", SyntaxError(text[:200]), line, ()) for line, text in (*magics, *more)]
+        out = [Fault("magic", SyntaxError(text[:200]), line, ()) for line, text in (*magics, *more)]
+        loads = self._run()
+        self.faults += [*out, *self._refused] if loads else []
+        return loads
 
     def _run(self) -> bool:
         try:
@@ -219,17 +216,14 @@ class Loading:
             if self._needed:
                 self._go_on(self._chosen(statements.parsed(self._source)))
             else:
-                self._run_whole(whole)
+                try:
+                    exec(whole, self.module.__dict__)
+                except BaseException as error:  # noqa: BLE001 - SystemExit is one of many ways to end a file
+                    self._go_on(self._after(error))
         if self.faults and not self._has_functions():
             self.faults[:0] = self._refused[:1]
             return False
         return True
-
-    def _run_whole(self, code: types.CodeType) -> None:
-        try:
-            exec(code, self.module.__dict__)
-        except BaseException as error:  # noqa: BLE001 - SystemExit is one of many ways to end a file
-            self._go_on(self._after(error))
 
     def _has_functions(self) -> bool:
         here = self.module.__name__
@@ -334,15 +328,10 @@ def _line_in(error: BaseException, main: str) -> int | None:
 
 def _future(body: list[ast.stmt]) -> int:
     """The compiler's flags that a module asks for with ``from __future__``."""
-    names = [
-        alias.name
-        for node in body
-        if isinstance(node, ast.ImportFrom) and node.module == "__future__"
-        for alias in node.names
-    ]
     flags = 0
-    for name in names:
-        flags |= int(getattr(getattr(__future__, name, None), "compiler_flag", 0))
+    for node in body:
+        for alias in node.names if isinstance(node, ast.ImportFrom) and node.module == "__future__" else ():
+            flags |= int(getattr(getattr(__future__, alias.name, None), "compiler_flag", 0))
     return flags
 
 

@@ -201,10 +201,8 @@ class CollectedChecks:
         for check in self._checks:
             for required in check.requires:
                 if required not in self._items:
-                    item = self._items[check.id]
-                    raise _fault(
-                        item, f"it requires {required!r}, which is not a check", "Name an existing check."
-                    )
+                    problem = f"it requires {required!r}, which is not a check"
+                    raise _fault(self._items[check.id], problem, "Name an existing check.")
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -229,27 +227,24 @@ class CollectedChecks:
 
     def run(self, check: Check, submission: RemoteSubmission) -> BaseException | None:
         """How the check ends for this submission: None if it passes, else what it raised."""
-        item = self._items[check.id]
+        item: Any = self._items[check.id]
         self._plugin.submission = submission
         try:
             with np.errstate(all="ignore"):  # a check may compute with whatever a submission returned
                 if check.id in self._plain:
-                    returned, outcome = self._called(item, self._plain[check.id])
-                    if returned is None:
-                        return outcome
+                    fixtures = self._plugin.fixtures(item.name, self._plain[check.id])
+                    if item.obj(**fixtures) is None:
+                        return None
+        except (KeyboardInterrupt, pytest.exit.Exception):  # ends pytest's own protocol, too
+            raise
+        except BaseException as error:  # noqa: BLE001 - whatever a check raises is how it ends
+            return error
+        else:
+            with np.errstate(all="ignore"):
                 # What returns something may be no test at all: pytest knows.
                 return self._through_pytest(item)
         finally:
             self._plugin.submission = None
-
-    def _called(self, item: Any, taken: tuple[str, ...]) -> tuple[object, BaseException | None]:
-        """What the function of a check returned, and what it raised."""
-        try:
-            return item.obj(**self._plugin.fixtures(item.name, taken)), None
-        except (KeyboardInterrupt, pytest.exit.Exception):  # ends pytest's own protocol, too
-            raise
-        except BaseException as error:  # noqa: BLE001 - whatever a check raises is how it ends
-            return None, error
 
     def _through_pytest(self, item: pytest.Item) -> BaseException | None:
         self._plugin.outcome = None

@@ -199,14 +199,8 @@ def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
     ratio = a / e
     known = next((words for factor, words in _TIMES.items() if _same(abs(ratio), factor)), "")
     if known:
-        also = [
-            n
-            for n, v in inputs
-            if n[0] == "`"
-            and v
-            and not (_is_small(v) or _is_small(1.0 / v))
-            and (_same(v, abs(ratio)) or _same(v * abs(ratio), 1.0))
-        ]
+        some = [(n, v) for n, v in inputs if n[0] == "`" and v and not (_is_small(v) or _is_small(1.0 / v))]
+        also = [n for n, v in some if _same(v, abs(ratio)) or _same(v * abs(ratio), 1.0)]
         turned = ", with the other sign" if ratio < 0 else ""
         return known + turned + (f" ({also[0]} is {dict(inputs)[also[0]]:g})" if len(also) == 1 else "")
     for power, words in ((1, "times {}"), (-1, "over {}"), (2, "times {} squared"), (-2, "over {} squared")):
@@ -270,11 +264,8 @@ def _of_order(a: Array, e: Array) -> str:
     if a.ndim == 2 and _same(a, e.T):
         return "Your matrix is the right one with rows and columns exchanged."
     if _same(a, e[::-1]) and len(e) > 1:
-        return (
-            "Each of the two stands in the other's place."
-            if len(e) == 2
-            else "The values are right, in reverse order."
-        )
+        two = "Each of the two stands in the other's place."
+        return two if len(e) == 2 else "The values are right, in reverse order."
     if e.ndim == 1 and _same(np.sort(a), np.sort(e)):
         return "The values are right, in another order."
     if len(e) > 3 and np.ptp(e) > 0:
@@ -410,12 +401,8 @@ def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
 
 def _several(returned: list[ast.expr | None], name: str) -> str:
     """That there are other values beside the one called ``name``; "" if a ``return`` shows none."""
-    if any(
-        isinstance(key, ast.Constant) and key.value == name
-        for value in returned
-        if isinstance(value, ast.Dict)
-        for key in value.keys
-    ):
+    keys = [key for value in returned if isinstance(value, ast.Dict) for key in value.keys]
+    if any(isinstance(key, ast.Constant) and key.value == name for key in keys):
         return "A dict is returned"
     beside = name.isidentifier() and any(isinstance(value, ast.Tuple) for value in returned)
     return "Several values are returned" if beside else ""

@@ -212,11 +212,8 @@ def _sentences(text: str) -> list[str]:
 
 def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:
     """The origin of a nan, if all checks that met one agree on it; otherwise only that there is one."""
-    said = {
-        f.guess.code: f.guess
-        for f in failures
-        if not f.finite and f.guess and words.kind(f.guess.code) == "nan"
-    }
+    guesses = [one.guess for one in failures if not one.finite and one.guess]
+    said = {guess.code: guess for guess in guesses if words.kind(guess.code) == "nan"}
     if len(said) == 1:
         return next(iter(said.values()))
     return next((guess for code, guess in said.items() if code in NOT_FINITE), None)
@@ -293,11 +290,9 @@ def table_path(folder: Path) -> Path:
 def read_table(folder: Path) -> Table | None:
     """The table of the exercise in this folder; None if it has none, ContentError if it is damaged."""
     path = table_path(folder)
-    return (
-        (tables_in(path).get(folder.name) if path.parent != folder else _own(path))
-        if path.is_file()
-        else None
-    )
+    if not path.is_file():
+        return None
+    return _own(path) if path.parent == folder else tables_in(path).get(folder.name)
 
 
 def words_in(folder: Path) -> Words:

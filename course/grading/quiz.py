@@ -58,12 +58,8 @@ class QuizScore:
 def score_record(bank: Bank, record: object) -> QuizScore | None:
     """Score the attempts of one student again; None if there are none.
 
-    Args:
-        bank: the questions of the course that grades.
-        record: the value of "quiz" in ``submission.json``, unchecked; it may be anything.
-
-    Raises:
-        UngradableError: ``quiz_record_inconsistent``; the message says which attempt and what is wrong.
+    The record is the value of "quiz" in ``submission.json``, unchecked; it may be anything. An
+    UngradableError says which attempt is wrong, and how.
     """
     # Words in place of a record are the reason why there is none.
     fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)

@@ -236,15 +236,9 @@ class Similar:
 
 
 def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, at_least: float) -> Similar:
-    """Compare all submissions of each exercise with each other and with the course's own code.
-
-    Args:
-        exercises: ids; empty takes all that were graded.
-        at_least: the smallest share to report.
-
-    Raises:
-        NotFoundError: no submission of such an exercise was graded.
-    """
+    """Compare all submissions of each exercise, or of some, with each other and with the course's own
+    code, and report shares of ``at_least`` so much. A NotFoundError if no submission of such an exercise
+    was graded."""
     found = Similar()
     known = set(catalog.exercise_ids()) - {QUIZ}
     graded = [item.id for item in results.exercises() if item.id in known]

@@ -125,12 +125,8 @@ _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 class LoadRefusedError(Exception):
     """The submission could not be loaded at all.
 
-    Attributes:
-        stage: "syntax", "import", "timeout" or "crash".
-        failure: what happened, as far as it is known.
-        text: the offending line, for a syntax error.
-        code: the line of the file.
-        printed: what it printed till then.
+    It is "syntax", "import", "timeout" or "crash"; what happened, as far as it is known; for a syntax
+    error the offending line; the line of the file; and what it printed till then.
     """
 
     def __init__(self, stage: str, failure: StudentFailure, text: str = "", code: str = "") -> None:
@@ -145,13 +141,9 @@ class LoadRefusedError(Exception):
 class LoadFault(NamedTuple):
     """What of a submission could not be loaded, by its own account.
 
-    Attributes:
-        stage: "syntax", "import", "magic" for a line of IPython's, or "absent" for an import that something
-            stands for.
-        failure: why; its line is where what was left out begins.
-        names: what that would have defined.
-        text: the offending line, for a syntax error.
-        code: that line of the file.
+    It is "syntax", "import", "magic" for a line of IPython's, or "absent" for an import that something
+    stands for. The failure's line is where what was left out begins; ``text`` is the offending line, for a
+    syntax error, ``code`` that line of the file.
     """
 
     stage: str

@@ -16,14 +16,8 @@ from typing import Protocol, TypeAlias
 from course.errors import CourseError, InternalError, MissingCapabilityError
 from course.grading.cluster.worker import FORMAT, Answers, Batch, decode, encode
 from course.grading.intake.students import Entry
-from course.grading.running.batch import (
-    KILLED_ITS_GRADER,
-    MAX_TRIES,
-    Graded,
-    as_error,
-    job_of,
-    without_grading,
-)
+from course.grading.running import batch as local
+from course.grading.running.batch import MAX_TRIES, Graded, without_grading
 from course.grading.running.grader import Job
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
@@ -165,7 +159,7 @@ class _Coordinator:
             if entry is None:
                 return
             if entry.submission is not None:
-                self._waiting.append(_Work(entry, job_of(entry, self._version(entry.exercise.id))))
+                self._waiting.append(_Work(entry, local.job_of(entry, self._version(entry.exercise.id))))
             elif entry.problem is not None:
                 self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
 
@@ -211,12 +205,12 @@ class _Coordinator:
             if answer.error is not None:
                 problem = answer.error
                 said = Problem(problem.code, f"Worker on {reply.host}: {problem.message}", problem.help)
-                self._failure = as_error(said, answer.exit_code)
+                self._failure = local.as_error(said, answer.exit_code)
                 return
             if not answer.is_about(work.job):
                 self._lost([work], LostBatch())
             elif answer.verdict is None:
-                self._blame(work, KILLED_ITS_GRADER)
+                self._blame(work, local.KILLED_ITS_GRADER)
             else:
                 self._done.append(Graded(work.entry, answer.verdict, answer.version))
         if len(reply.answers) < len(batch):

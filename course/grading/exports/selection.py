@@ -109,15 +109,8 @@ def select(
 ) -> Selection:
     """Select the content of an export.
 
-    Args:
-        usable: whether a row of the roster has the key this format finds people by; without it a roster is
-            not needed.
-        needs: that key.
-
-    Raises:
-        NotFoundError: no such exercise.
-        UsageError: this format needs a roster.
-        MissingCapabilityError: the roster lacks students, and ``partial`` was not asked for.
+    ``usable`` says whether a row of the roster has the key this format finds people by, which is what it
+    ``needs``; without it a roster is not needed.
     """
     known = {exercise.id for exercise in results.exercises()}
     unknown = [name for name in (*options.exercises, *options.assignments) if name not in known]

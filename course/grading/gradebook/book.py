@@ -23,21 +23,8 @@ from typing import Any, Self, TypeVar
 import msgspec
 
 from course.errors import CourseError, IntegrityError
-from course.grading.gradebook.file import (
-    KEYS,
-    SEAL,
-    TABLES,
-    begin_writing,
-    explained,
-    open_file,
-    override_digest,
-    release,
-    rescue,
-    row_into,
-    seal,
-    unseal,
-)
-from course.grading.gradebook.file import create as create_file
+from course.grading.gradebook import file
+from course.grading.gradebook.file import KEYS, SEAL, TABLES, explained, override_digest, rescue, row_into
 from course.grading.gradebook.records import (
     Decision,
     GradedExercise,
@@ -98,8 +85,8 @@ class Gradebook:
         self._changed = False
         self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
         if create:
-            create_file(path)
-        self._db = open_file(path, writing=self._writing)
+            file.create(path)
+        self._db = file.open_file(path, writing=self._writing)
         ((self._run,),) = self._rows("SELECT ifnull(max(number), 0) FROM runs")
 
     def __enter__(self) -> Self:
@@ -117,9 +104,9 @@ class Gradebook:
         try:
             with explained(self.path):
                 if self._changed:
-                    seal(self._db)
+                    file.seal(self._db)
                 if self._begun:
-                    release(self._db)
+                    file.release(self._db)
         finally:
             self._db.close()
 
@@ -431,12 +418,12 @@ class Gradebook:
         start = time.perf_counter()
         with explained(self.path):
             if self._writing and not self._begun:
-                begin_writing(self._db)
+                file.begin_writing(self._db)
                 self._begun = True
             self._db.execute("BEGIN IMMEDIATE")
             try:
                 if not self._changed:
-                    unseal(self._db)
+                    file.unseal(self._db)
                 yield
                 self._db.execute("COMMIT")
                 self._changed = True

@@ -21,7 +21,6 @@ import os
 import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
@@ -261,23 +260,12 @@ def _publish(draft: Path, path: Path) -> None:
 
 
 def open_file(path: Path, *, writing: bool) -> sqlite3.Connection:
-    """An open, recognised and up-to-date gradebook.
-
-    Args:
-        writing: lock it against all other processes until it is closed.
-
-    Raises:
-        NotFoundError: there is none.
-        UsageError: another process is writing it.
-        MissingCapabilityError: it belongs to a newer version, or cannot be written here.
-        IntegrityError: the file is damaged or no gradebook.
-    """
+    """An open, recognised and up-to-date gradebook, or what ``Gradebook`` raises; for writing it is locked
+    against all other processes until it is closed."""
     if not path.is_file():
-        raise NotFoundError(
-            f"There is no gradebook at {path}.",
-            help=rescue(path, "Name the folder that `course grade run --out` wrote."),
-            code="gradebook_not_found",
-        )
+        message = f"There is no gradebook at {path}."
+        advice = rescue(path, "Name the folder that `course grade run --out` wrote.")
+        raise NotFoundError(message, help=advice, code="gradebook_not_found")
     with explained(path):
         db = sqlite3.connect(path, isolation_level=None, timeout=1.0)
     try:
@@ -370,15 +358,11 @@ def release(db: sqlite3.Connection) -> None:
 
 
 def _checked_format(db: sqlite3.Connection, path: Path) -> int:
-    if _one(db, "PRAGMA application_id") != _APPLICATION_ID:
+    if db.execute("PRAGMA application_id").fetchone()[0] != _APPLICATION_ID:
         raise IntegrityError(f"{path} is not a gradebook.", help=rescue(path, "Name another folder."))
-    version = int(_one(db, "PRAGMA user_version"))
+    version = int(db.execute("PRAGMA user_version").fetchone()[0])
     if version > FORMAT_VERSION:
         message = f"{path} was written by a newer version of this course (format {version})."
         advice = "Update the course; nothing was changed."
         raise MissingCapabilityError(message, help=advice, code="newer_format")
     return version
-
-
-def _one(db: sqlite3.Connection, query: str) -> Any:
-    return db.execute(query).fetchone()[0]

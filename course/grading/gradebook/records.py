@@ -103,15 +103,12 @@ class Override(msgspec.Struct, frozen=True):
 
 
 class Decision(msgspec.Struct, frozen=True):
-    """A change of grades: who made it, and why.
+    """A change of grades: who made it (empty for the account this runs under), when (UTC, ISO 8601; empty
+    for now), and why.
 
-    Attributes:
-        at: UTC, ISO 8601; empty for now.
-        who: the name of the account; empty for the one this runs under.
-        kind: "override", "lift", "assign", "late", "rerun", "resume" (another submission
-            counts now), "roster" or "salvage".
-        student, exercise: what it is about; empty for a whole class.
-        before, after: in words or JSON, what counted and what counts.
+    ``kind`` is "override", "lift", "assign", "late", "rerun", "resume" (another submission counts now),
+    "roster" or "salvage"; without student and exercise it is about a whole class. What counted before and
+    what counts is told in words or JSON.
     """
 
     at: str

@@ -19,19 +19,8 @@ from pathlib import Path
 import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError
-from course.grading.gradebook.file import (
-    KEYS,
-    SEAL,
-    TABLES,
-    create,
-    explained,
-    open_file,
-    override_digest,
-    release,
-    row_digest,
-    row_into,
-    seal,
-)
+from course.grading.gradebook import file
+from course.grading.gradebook.file import KEYS, SEAL, TABLES, override_digest, row_digest
 from course.isolation.launch import private_folder, remove_tree
 
 # ---
@@ -328,15 +317,15 @@ def _take_decided(found: dict[str, dict[Row, Row]]) -> None:
 
 
 def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:
-    create(target)
-    db = open_file(target, writing=True)
-    with contextlib.closing(db), explained(target):
+    file.create(target)
+    db = file.open_file(target, writing=True)
+    with contextlib.closing(db), file.explained(target):
         db.execute("BEGIN IMMEDIATE")
         for name, rows in found.items():
-            db.executemany(row_into(name, "INSERT OR IGNORE"), rows.values())
+            db.executemany(file.row_into(name, "INSERT OR IGNORE"), rows.values())
         db.execute("COMMIT")
-        seal(db)
-        release(db)
+        file.seal(db)
+        file.release(db)
 
 
 #: What a lost fact about the class is called.

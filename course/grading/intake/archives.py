@@ -32,17 +32,8 @@ from course.grading.intake import downloads
 from course.grading.intake.downloads import is_folder_meant, is_meant
 from course.grading.pipes import Servant, limit_cpu, limit_memory, served, write_frame
 from course.grading.quiz import checked_record
-from course.handed_in.limits import (
-    FORMAT_VERSION,
-    MANIFEST,
-    MAX_ARCHIVE,
-    MAX_CODE,
-    MAX_FILE,
-    MAX_FILES,
-    MAX_NOTEBOOK,
-    MAX_STREAMED,
-    MAX_UNPACKED,
-)
+from course.handed_in import limits
+from course.handed_in.limits import MANIFEST, MAX_FILE, MAX_NOTEBOOK, MAX_STREAMED, MAX_UNPACKED
 from course.handed_in.notebook import notebook_source
 from course.isolation.inside import statements
 from course.printable import one_line, quoted, some
@@ -265,8 +256,8 @@ def _held(path: Path) -> _Held | RefusedError:
 def _read(path: Path, wanted: Callable[[str, str], bool]) -> _Held:
     if not stat.S_ISREG(path.lstat().st_mode):
         raise _refused(path, "it is not a regular file")
-    if path.stat().st_size > MAX_ARCHIVE:
-        raise _refused(path, f"it is larger than {MAX_ARCHIVE >> 20} MB")
+    if path.stat().st_size > limits.MAX_ARCHIVE:
+        raise _refused(path, f"it is larger than {limits.MAX_ARCHIVE >> 20} MB")
     if _listed(path) > MAX_LISTED:
         raise _refused(path, "it holds tens of thousands of files")
     with zipfile.ZipFile(path) as archive:
@@ -302,8 +293,8 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
         raise _refused(path, downloads.DEEP)
     unwanted = downloads.clutter(plain)
     files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
-    if len(files) > MAX_FILES:
-        raise _refused(path, f"it holds more than {MAX_FILES} files")
+    if len(files) > limits.MAX_FILES:
+        raise _refused(path, f"it holds more than {limits.MAX_FILES} files")
     code = (info for info in files if downloads.may_be_code(info.filename.replace("\\", "/")))
     if sum(info.file_size for info in code) > MAX_UNPACKED:
         raise _refused(path, f"its files unpack to more than {MAX_UNPACKED >> 20} MB")
@@ -343,7 +334,7 @@ def _read_manifest(path: Path, content: bytes) -> dict[str, Any]:
     with contextlib.suppress(ValueError, RecursionError):
         manifest = json.loads(content)
     match manifest:
-        case {"format_version": int(version)} if version > FORMAT_VERSION:
+        case {"format_version": int(version)} if version > limits.FORMAT_VERSION:
             message = f"{quoted(path.name)} was written by a newer version of this course."
             advice = "Update the course on the machine that grades."
             raise RefusedError("newer_format", message, advice)
@@ -595,7 +586,7 @@ def _defined(
     except (ValueError, AttributeError, TypeError, RecursionError):
         return (), (), 0
     size = sum(map(len, pieces))
-    if size > MAX_CODE:
+    if size > limits.MAX_CODE:
         return (), (), 0  # nor could it be graded
     found = [node for tree in map(statements.tree, pieces) if tree for node in tree.body]
     written: dict[str, bool] = {}  # the last one of a name counts

@@ -531,14 +531,11 @@ class Meter:
 
 
 def compressed(path: Path, kind: str, most: int, total: int, meter: Meter) -> Iterator[tuple[str, bytes]]:
-    """Names and contents of what may be code in a tar archive, or of the one file that was compressed.
+    """Names and contents of what may be code in a tar archive, or of the one file that was compressed;
+    larger ones than so many bytes, each or all together, are passed over.
 
-    Args:
-        most, total: bytes of a file, and of all of them; larger ones are passed over.
-
-    Raises:
-        TooMuchError: to find them takes more than the meter allows, or a path is too long.
-        OSError: it is damaged.
+    TooMuchError: to find them takes more than the meter allows, or a path is too long. OSError: it is
+    damaged.
     """
     try:
         with _OPENERS[kind](path, "rb") as meter.source:

@@ -462,13 +462,9 @@ def _within(content: bytes, shown: str, limit: int) -> bytes:
 def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | None]:
     """A student's quiz attempts, as in the JSON, and the file they came in; an empty list if none.
 
-    An archive that cannot be read gives none: the exercises in it report what is wrong with it.
-
-    Args:
-        alone: no exercise is read that could.
-
-    Raises:
-        UngradableError: several files hold different attempts, or a file that may hold some was not read.
+    An archive that cannot be read gives none: the exercises in it report what is wrong with it, unless
+    this is read ``alone``. UngradableError: several files hold different attempts, or a file that may hold
+    some was not read.
     """
     found: list[tuple[Any, Path]] = []
     unread: RefusedError | None = None

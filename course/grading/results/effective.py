@@ -481,15 +481,11 @@ _MAX_REASON = 2000
 
 
 def override(results: Results, student: str, exercise: str, score: float, reason: str) -> Effective:
-    """Set a score and store the reason; earlier decisions stay in the gradebook.
+    """Set a score, from 0 to the exercise's maximum, and store the reason; earlier decisions stay in the
+    gradebook.
 
-    Args:
-        results: over a gradebook opened for writing.
-        score: points, from 0 to the exercise's maximum.
-
-    Raises:
-        NotFoundError: the gradebook knows no such student or exercise.
-        UsageError: no such score is possible, or there is no reason.
+    NotFoundError: the gradebook knows no such student or exercise. UsageError: no such score is possible,
+    or there is no reason.
     """
     most = _maximum(results, student, exercise)
     if not math.isfinite(score) or not 0 <= score <= most:

@@ -261,15 +261,8 @@ def _once(path: Path, lines: dict[tuple[str, ...], int], line: int, *work: str) 
 def worksheet_times(
     sheet: Worksheet, students: Mapping[str, str], exercise: str, zone: dt.tzinfo
 ) -> list[SubmittedAt]:
-    """The times of a worksheet.
-
-    Args:
-        students: participant's number -> student.
-        zone: that of the deadline: Moodle writes none.
-
-    Raises:
-        UsageError: a time cannot be read.
-    """
+    """The times of a worksheet, by participant's number, in the zone of the deadline, as Moodle writes
+    none; a UsageError if one cannot be read."""
     found = []
     for key, words in sheet.times.items():
         if key in students:

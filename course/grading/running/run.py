@@ -35,17 +35,8 @@ from course.grading.results.effective import (
     replacing,
 )
 from course.grading.results.roster import Roster
+from course.grading.running import folder as runs
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.folder import (
-    BOOK,
-    begin,
-    export_all,
-    note_looked,
-    note_unread,
-    note_without_work,
-    remember,
-    taken_back,
-)
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
 from course.printable import one_line
 from course.quizzing.bank import Bank, needed
@@ -227,14 +218,16 @@ def grade_class(
         raise UsageError(message, help=advice, code="submissions_among_graders")
     started = time.monotonic()
     with (
-        taken_back(out) as taken,
-        begin(out, folder, resume=options.resume) as book,
+        runs.taken_back(out) as taken,
+        runs.begin(out, folder, resume=options.resume) as book,
         frozen(_graders(book, options, catalog), options.exercises or None) as graders,
     ):
         before = counting(Results(book)) if options.resume else {}
         run = _Run(members, graders, folder, options, book)
         if options.resume and (out / "grades.csv").is_file():
-            export_all(out, Results(book))  # what lies there says of work that came since that there is none
+            runs.export_all(
+                out, Results(book)
+            )  # what lies there says of work that came since that there is none
         for result, files in run.results(grade):
             with run.replacing(result.key):
                 graded = book.add(result, files)
@@ -242,18 +235,18 @@ def grade_class(
             run.one_less(result.key.student)
             report(run.view.of(graded), run.done, len(run.names))
         run.note_times()
-        note_unread(book, run.unread)
+        runs.note_unread(book, run.unread)
         summary = run.summary
         summary.unrecognised = [] if options.only else members.unrecognised
-        note_without_work(book, run.names)
+        runs.note_without_work(book, run.names)
         results = Results(book, run.roster)
         summary.count(results)
         if options.resume:
             summary.edited = edited_since(results, catalog)
             summary.lower = list(_lower(before, counting(results)))
-        export_all(out, results)
+        runs.export_all(out, results)
         summary.write_s = book.write_s
-    back_up(out / BOOK)
+    back_up(out / runs.BOOK)
     summary.elapsed_s = time.monotonic() - started
     return summary
 
@@ -340,13 +333,13 @@ class _Run:
             book.keep_snapshot(self.summary.graders, self._graders.snapshot.packed)
             book.begin_run("run", facts)
         asked = [*self._versions, *([QUIZ] if self._with_quiz else [])]
-        note_looked(book, asked, self.names, self._left_aside, named=bool(options.exercises))
+        runs.note_looked(book, asked, self.names, self._left_aside, named=bool(options.exercises))
         book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
         # Before a roster says who is enrolled: until their work is looked at, nobody handed in nothing.
         book.set_waiting(sorted(self.names), others=bool(options.only))
         if options.roster is not None:
-            found = remember(book, options.roster)
+            found = runs.remember(book, options.roster)
             self.roster, self.summary.moved, self.summary.dropped = found.roster, found.moved, found.dropped
 
     def results(self, grade: GradeAll) -> Iterator[tuple[Result, dict[str, bytes] | None]]:

@@ -121,15 +121,9 @@ def fresh(content: Content) -> Snapshot:
 def kept(book: Gradebook, sha256: str | None, content: Content, accepted: str = "") -> Snapshot | None:
     """The snapshot of that digest in a gradebook; None where it has none.
 
-    It is code, which a grader runs as the user who grades. So it must be this checkout's own, or accepted.
-
-    Args:
-        content: what this checkout grades with.
-        accepted: the digest of a snapshot that may run, whoever made it.
-
-    Raises:
-        IntegrityError: it is damaged.
-        ForeignGradersError: it is neither, nor has this checkout begun a run with it.
+    It is code, which a grader runs as the user who grades. So it must be this checkout's own, or
+    ``accepted`` by its digest, whoever made it. IntegrityError: it is damaged. ForeignGradersError: it is
+    neither, nor has this checkout begun a run with it.
     """
     packed = book.snapshot(sha256) if sha256 else None
     if not packed or not sha256:

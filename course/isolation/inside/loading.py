@@ -152,14 +152,10 @@ _MOST_FAULTS = 20
 
 
 class Fault:
-    """What of a module was left out.
+    """What of a module was left out: the line on which it begins, what it would have defined, and why.
 
-    Attributes:
-        stage: "syntax", "import", or "magic" for a line of IPython's; "absent" for an import that something
-            stands for.
-        error: why.
-        line: of the module, on which it begins.
-        names: what it would have defined.
+    It is "syntax", "import", or "magic" for a line of IPython's; "absent" for an import that something
+    stands for.
     """
 
     def __init__(self, stage: str, error: BaseException, line: int, names: Collection[str]) -> None:
@@ -170,17 +166,10 @@ class Fault:
 
 
 class Loading:
-    """One module on its way.
+    """One module on its way, as far as it is loaded, and what was left out of it, in the order in which
+    that was found.
 
-    Args:
-        source: its text.
-        main: its file's name.
-        imports: decides what it may import.
-        needed: functions; where there are any, only what they need is run. Empty runs all.
-
-    Attributes:
-        module: as far as it is loaded.
-        faults: what was left out of it, in the order in which that was found.
+    Where there are ``needed`` functions, only what they need is run.
     """
 
     def __init__(self, source: str, main: str, imports: Imports, needed: Collection[str] = ()) -> None:

@@ -257,14 +257,10 @@ class Again:
             self._workers.popitem()[1].close()
 
     def depends_on_the_past(self, heard: Sequence[Heard], task: str, patience: float) -> bool:
-        """Whether calls give something else in the opposite order.
+        """Whether calls give something else in the opposite order, each time within so much CPU time, s.
 
-        A function that draws numbers of its own, or measures a time, gives something else every time: it is
-        asked twice, and nothing is said of it.
-
-        Args:
-            heard: calls of functions, in order.
-            patience: seconds of CPU time for each of the two times.
+        A function that draws numbers of its own, or measures a time, gives something else every time: it
+        is asked twice, and nothing is said of it.
         """
         asked = heard[: -_MOST - 1 : -1]
         first = self._values(0, asked, task, patience)

@@ -45,19 +45,9 @@ from course.scoring.failures import (
     finding_for,
     finding_of,
 )
+from course.scoring.judging import outcomes
 from course.scoring.judging.explaining import Again, Explainer
-from course.scoring.judging.outcomes import (
-    found,
-    left_out_notes,
-    load_problem,
-    no_functions,
-    result,
-    skipped,
-    to_do,
-    told_more,
-    unjudged,
-    untouched,
-)
+from course.scoring.judging.outcomes import found, load_problem, result
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import Heard, RemoteSubmission
 from course.scoring.verdict import OURS, CheckResult, Places, Problem, Status, Verdict, Visibility, bounded
@@ -178,7 +168,7 @@ class GradingSession:
                 return self._verdict("ungradable", error=self._nothing_loaded(remote, submission))
             self._remote = remote
             tasks = [task.id for task in self.exercise.task]
-            left_out = left_out_notes(remote, self._places(submission), tasks)
+            left_out = outcomes.left_out_notes(remote, self._places(submission), tasks)
             self.printed = beginning(remote.printed(), _PRINTED)
             results = self._run(remote, only, submission)
         except IsolationError as error:
@@ -188,7 +178,7 @@ class GradingSession:
             with contextlib.suppress(IsolationError):
                 remote.close()
         if self._terms.home and len(self.exercise.task) > 1:
-            results = to_do(results, untouched(self.exercise, submission))
+            results = outcomes.to_do(results, outcomes.untouched(self.exercise, submission))
         verdict = self._graded(results)
         if not self._terms.home:
             left_out += [
@@ -202,7 +192,7 @@ class GradingSession:
         """Why none of the functions is there."""
         fault = next((one for one in remote.faults if one.stage in {"syntax", "import"}), None)
         if fault is None:
-            return no_functions(self.exercise)
+            return outcomes.no_functions(self.exercise)
         refused = LoadRefusedError(fault.stage, fault.failure, fault.text, fault.code)
         return load_problem(refused, self._places(submission), self.exercise.id)
 
@@ -259,7 +249,7 @@ class GradingSession:
         for check in ordered:
             blocking = [name for name in check.requires if results[name].status is not Status.PASS]
             results[check.id] = (
-                skipped(check, blocking[0]) if blocking else self._run_one(check, remote, places)
+                outcomes.skipped(check, blocking[0]) if blocking else self._run_one(check, remote, places)
             )
         if self._explainer is not None and self._failed:
             with Again(lambda: self._load(submission)) as again:
@@ -267,7 +257,7 @@ class GradingSession:
         for name, judged in results.items():
             if judged.status in {Status.FAIL, Status.ERROR}:
                 fact = self._common(judged, remote)
-                results[name] = told_more(judged, source, places, self._raised.get(name), fact)
+                results[name] = outcomes.told_more(judged, source, places, self._raised.get(name), fact)
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
@@ -309,7 +299,7 @@ class GradingSession:
         if proven is False:
             message = ON_THE_MODEL + where
             return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
-        finding = unjudged(remote.returned, proven=bool(proven))
+        finding = outcomes.unjudged(remote.returned, proven=bool(proven))
         return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
 
     def _common(self, judged: CheckResult, remote: RemoteSubmission) -> str | None:

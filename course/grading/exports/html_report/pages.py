@@ -607,15 +607,10 @@ def _link(path: Path) -> str:
 def write_pages(
     path: Path, results: Results, found: Iterable[Effective], exercises: Sequence[str]
 ) -> list[Path]:
-    """Write everything.
+    """Write everything: ``path`` is the page about the class, and the rest lies beside it.
 
-    Args:
-        path: of the page about the class; the rest lies beside it.
-        found: results ordered by student; those that have only an override may come at the end.
-        exercises: ids, in the order they are shown.
-
-    Returns:
-        The written paths: the class page, the list of students as a page and as a table, the folder of pages.
+    The results are ordered by student; those that have only an override may come at the end. What is
+    written is the class page, the list of students as a page and as a table, and the folder of pages.
     """
     noted = {item.id: item for item in results.exercises()}
     order = {name: at for at, name in enumerate(exercises)}

@@ -182,16 +182,11 @@ class CappedList:
 
 
 class Tally:
-    """A class, counted.
+    """A class, counted over some exercises in the order of the course.
 
-    Args:
-        exercises: to count, in the order of the course.
-
-    Attributes:
-        troubled: without a grade, for any reason, with or without an instructor's score.
-        reasons: number of those by exercise, state and code.
-        untimed: number of results without a trusted submission time.
-        flagged: number of results that the download calls late, without saying by how much.
+    ``troubled`` are the results without a grade, for any reason, with or without an instructor's score;
+    ``reasons`` their number by exercise, state and code. ``untimed`` have no trusted time, and ``flagged``
+    are called late by the download, without saying by how much.
     """
 
     def __init__(self, exercises: Iterable[GradedExercise]) -> None:

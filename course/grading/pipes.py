@@ -81,12 +81,11 @@ def served(source: IO[bytes]) -> Iterator[bytes]:
 
 
 class Servant:
-    """A process that reads strangers' files; started when it is first needed, and again after one killed it.
+    """A process that reads strangers' files; started when it is first needed, and again after one killed
+    it.
 
-    Args:
-        module: its program: it writes a frame when it is ready, then answers each frame with one.
-        arguments: of that program.
-        wall_s: seconds after which it is killed over a question.
+    Its program writes a frame when it is ready, then answers each frame with one, or is killed after
+    ``wall_s``.
     """
 
     def __init__(self, module: str, *arguments: str, wall_s: float) -> None:

@@ -191,13 +191,9 @@ class Document:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two documents of one exercise.
-
-    Attributes:
-        share: how much of the smaller one, by weight, the other has too; 1 for all of it.
-        passages: lines of the first and of the second that correspond, as (first, last).
-        lines: of the first one in such passages.
-    """
+    """Two documents of one exercise: how much of the smaller one, by weight, the other has too; the lines
+    of the first and of the second that correspond, as (first, last); and how many of the first are in
+    them."""
 
     exercise: str
     first: Document
@@ -219,14 +215,9 @@ class Group:
 
 @dataclass
 class Similar:
-    """The result of a comparison.
-
-    Attributes:
-        pairs: the most alike first, at most ``MAX_PAIRS``.
-        groups: the largest first, made from all pairs.
-        unreadable: "student exercise" of each file that is not Python, or is too long to compare.
-        left_out: pairs beyond ``MAX_PAIRS``.
-    """
+    """The result of a comparison: at most ``MAX_PAIRS`` pairs, the most alike first; groups from all
+    pairs, the largest first; and "student exercise" of each file that is not Python, or is too long to
+    compare."""
 
     pairs: list[Pair] = field(default_factory=list)
     groups: list[Group] = field(default_factory=list)

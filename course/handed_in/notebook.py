@@ -213,13 +213,9 @@ class _Record(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class NotebookSource(Places):
-    """A notebook as a module.
-
-    Attributes:
-        notes: parts left out, and assumptions, a sentence each.
-        starts: (line of the module, number of the cell), ascending: where each cell's lines begin.
-        called: names of cells by their numbers, for those that are not called "cell 7".
-    """
+    """A notebook as a module, with a sentence on each part left out, and each assumption. ``starts`` has,
+    ascending, the line of the module where a cell's lines begin, and the cell's number; ``called`` the
+    names of cells that are not "cell 7"."""
 
     source: bytes
     notes: tuple[str, ...]

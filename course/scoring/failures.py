@@ -110,10 +110,8 @@ def place_of(error: BaseException) -> tuple[str, int] | None:
 def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:
     """A failure as words: what happened and what to do, without any value of the check's.
 
-    The exception's own message is in ``actual``, which hidden checks do not show.
-
-    Args:
-        shown: no input is hidden, so the message repeats the exception's own.
+    The exception's own message is in ``actual``, which hidden checks do not show; where no input is
+    hidden, the message repeats it.
     """
     if failure.kind == "error":
         return _error_finding(failure, shown=shown)
@@ -232,12 +230,8 @@ _AS_ASKED = (
 
 @dataclass(frozen=True)
 class Section:
-    """One part of a report.
-
-    Attributes:
-        text: paragraphs, separated by empty lines; lines that begin with "- " are items.
-        columns, rows: a table; every cell is text with its unit.
-    """
+    """One part of a report: paragraphs, separated by empty lines, in which lines that begin with "- " are
+    items; a table, in which every cell is text with its unit; a plot."""
 
     title: str
     text: str = ""

@@ -118,11 +118,8 @@ class Problem(msgspec.Struct, frozen=True):
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     """Everything one grading of one submission found.
 
-    Attributes:
-        state: "graded", "ungradable" or "grader_error".
-        isolation: protection level the student's code ran at: "L3", "L2" or "L1".
-        error: why it is ungradable, or what broke in the grader; None when graded.
-        warnings: remarks that cost no points.
+    It is "graded", "ungradable" or "grader_error", and ``error`` says why; the code ran at protection
+    level "L3", "L2" or "L1"; warnings are remarks that cost no points.
     """
 
     exercise: str

@@ -228,12 +228,10 @@ def local_cluster(workers: int) -> Iterator[GradeAll]:
 
 @contextlib.contextmanager
 def remote_cluster(address: str) -> Iterator[GradeAll]:
-    """What grades on the cluster whose scheduler is at ``address``, or is in the scheduler file of that name.
+    """What grades on the cluster whose scheduler is at ``address``, or is in the scheduler file of that
+    name; it needs the extra "cluster", too.
 
     Others may use it too, so unprotected submissions, which could command it, raise a UsageError there.
-
-    Raises:
-        MissingCapabilityError: Dask is not installed.
     """
     require("cluster")
     with contextlib.ExitStack() as stack:

@@ -79,9 +79,8 @@ def write_bytes(path: Path, content: bytes) -> None:
 def replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file that takes its name when it is complete; until then the old one stays.
 
-    Raises:
-        UsageError: it is a folder, or a database: a gradebook, most likely.
-        MissingCapabilityError: there is no room, or it cannot be written there.
+    UsageError: it is a folder, or a database: a gradebook, most likely. MissingCapabilityError: there is
+    no room.
     """
     draft = None
     try:

@@ -63,11 +63,9 @@ class Needs:
 class Written:
     """The result of an export.
 
-    Attributes:
-        unmatched: students left out.
-        without_grade: "student exercise" of results without a score because the grader failed.
-        kept: rows of a platform's file that have a grade, feedback or an excuse of a teacher's, with it.
-        notes: what the instructor should know, one sentence each.
+    ``unmatched`` students are left out; ``without_grade`` are results ("student exercise") without a score
+    because the grader failed; rows of a platform's file are ``kept`` that have a grade, feedback or an
+    excuse of a teacher's.
     """
 
     paths: list[Path] = field(default_factory=list)
@@ -149,12 +147,8 @@ def select(
 
 
 def check_settled(selection: Selection, options: ExportOptions) -> None:
-    """Refuse to tell a platform what is not known yet, or a zero that the instructor has not confirmed.
-
-    Raises:
-        MissingCapabilityError: a run has still to look at somebody's work; or something could not be graded,
-            and neither a score by hand nor ``zeros`` says that it is worth 0.
-    """
+    """Refuse to tell a platform what is not known yet, as a run has still to look at it, or a zero that
+    the instructor has not confirmed, by a score by hand or by ``zeros`` (MissingCapabilityError)."""
     left_out = set(selection.written.unmatched)
     asked = [item for item in selection.results.all() if item.exercise in selection.exercises]
     unread = {item.student for item in asked if item.waiting}

@@ -217,13 +217,11 @@ class Gradebook:
         return int(newest[0]) + 1
 
     def confirm(self, key: Key, moving: AbstractContextManager[None] | None = None) -> bool:
-        """Whether this very submission was graded; if so, make that the newest result of its student again.
+        """Whether this very submission was graded; if so, make that the newest result of its student
+        again, in ``moving``.
 
         A student who hands in an earlier version again gets the score of that version. A result of other
         graders than the key's counts too, so that nothing is graded again without need.
-
-        Args:
-            moving: entered while another result becomes the newest.
         """
         number = self._find(key)
         if number is None:

@@ -191,10 +191,8 @@ def rescue(path: Path, otherwise: str = "") -> str:
 def explained(path: Path) -> Iterator[None]:
     """Errors of SQLite, and of what reads the content of a row, as sentences.
 
-    Raises:
-        UsageError: another process is using the file.
-        MissingCapabilityError: it cannot be read or written where it is.
-        IntegrityError: it is damaged.
+    UsageError: another process is using the file. MissingCapabilityError: it cannot be read or written
+    where it is. IntegrityError: it is damaged.
     """
     try:
         yield

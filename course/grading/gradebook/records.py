@@ -20,13 +20,8 @@ class Key:
 
 @dataclass(frozen=True)
 class Result:
-    """One stored result.
-
-    Attributes:
-        graded_at: UTC, ISO 8601.
-        run: number of the grading or regrading it came from.
-        number: grows with time; the newest result of a student and exercise is the one that counts.
-    """
+    """One stored result, graded at a time (UTC, ISO 8601) in the grading or regrading of that number.
+    ``number`` grows with time; the newest result of a student and exercise is the one that counts."""
 
     key: Key
     verdict: Verdict
@@ -57,13 +52,9 @@ class PlatformIdentity(msgspec.Struct, frozen=True):
 
 
 class SubmittedAt(msgspec.Struct, frozen=True):
-    """A time of submission, by one witness.
-
-    Attributes:
-        submission_sha256: of the submission; empty for any by this student.
-        source: the witness: "gradescope", "list", "mtime", or "canvas-late" (which only says: late).
-        at: seconds since 1970, UTC; None if the witness does not say.
-    """
+    """A time of submission (seconds since 1970, UTC; None if not said), by one witness: "gradescope",
+    "list", "mtime", or "canvas-late", which only says: late. Without a digest it is of any submission by
+    this student."""
 
     student: str
     exercise: str

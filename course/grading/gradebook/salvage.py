@@ -213,11 +213,8 @@ class Salvaged:
 def salvage(path: Path, target: Path) -> Salvaged:
     """Write a new gradebook from all intact rows of a damaged one and its backups; those stay unchanged.
 
-    Raises:
-        NotFoundError: there is no gradebook and no backup.
-        IntegrityError: no row in them is intact.
-        UsageError: ``target`` exists.
-        MissingCapabilityError: it cannot be written.
+    NotFoundError: there is no gradebook and no backup. IntegrityError: no row in them is intact.
+    UsageError: ``target`` exists. MissingCapabilityError: it cannot be written.
     """
     others = backups(path)
     if not path.is_file() and not others:

@@ -58,12 +58,10 @@ class RefusedError(UngradableError):
 
 
 def quiz_of(path: Path, loose: bytes) -> object:
-    """The quiz attempts in what ``course submit`` wrote: an archive, or its metadata alone once unpacked.
+    """The quiz attempts in what ``course submit`` wrote: an archive, or its metadata alone once unpacked
+    (``loose``).
 
     Words if they have another form, or if the metadata cannot be read and no file beside it will say so.
-
-    Args:
-        loose: the metadata, unpacked; empty if it is in an archive.
     """
     alone = bool(loose)
     try:
@@ -87,14 +85,9 @@ def _is_ours(manifest: bytes) -> bool:
 
 
 class ArchiveContent(msgspec.Struct, frozen=True):
-    """An archive's file for an exercise.
-
-    Attributes:
-        name: in the archive.
-        notes: assumptions that were made, one sentence each.
-        copies: the members that are the same file, this one included.
-        written: the Python and NumPy that it was written with, by its own account; empty if it has none.
-    """
+    """An archive's file for an exercise, by its name there, with a sentence on each assumption that was
+    made, the members that are the same file, and the Python and NumPy that it was written with, if it says
+    so."""
 
     name: str
     content: bytes
@@ -208,13 +201,9 @@ def _compressed(path: Path, kind: str, meter: downloads.Meter) -> list[tuple[str
 
 @dataclass(frozen=True)
 class _Held:
-    """A zip whose members are all harmless.
-
-    Attributes:
-        names: in the archive, by those without the folders around all of them.
-        files: what may be code, or why one cannot be read, by the latter.
-        manifest: of ``course submit``, or why it cannot be read; empty in an archive made by hand.
-    """
+    """A zip whose members are all harmless: their names there, by those without the folders around all of
+    them; by these, what may be code; and the manifest of ``course submit``, if it has one. What cannot be
+    read is why."""
 
     names: dict[str, str]
     files: dict[str, bytes | RefusedError]

@@ -186,10 +186,8 @@ class ClassList:
 def class_list(folder: Path, layout: str = "auto") -> ClassList:
     """The class in a folder.
 
-    Raises:
-        NotFoundError: there is no such folder, or it has no students.
-        UsageError: some names are a platform's and some are not; the message lists them.
-        MissingCapabilityError: reading this download needs something that is not installed.
+    NotFoundError: there is no such folder, or it has no students. UsageError: some names are a platform's
+    and some are not. MissingCapabilityError: reading this download needs something that is not installed.
     """
     if layout not in LAYOUTS:
         raise UsageError(f"--layout is {layout!r}.", help=f"It takes {', '.join(LAYOUTS)}.")

@@ -411,12 +411,8 @@ def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submiss
 
 
 def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
-    """A file as a submission; a notebook becomes the module that it makes up.
-
-    Raises:
-        RefusedError: it is empty, in an encoding that Python does not expect, or a notebook that cannot be
-            graded.
-    """
+    """A file as a submission; a notebook becomes the module that it makes up. It is refused if it is
+    empty, in an encoding that Python does not expect, or a notebook that cannot be graded."""
     called = name.rpartition("/")[2]
     shown = quoted(called)
     if not content.strip():
@@ -604,12 +600,10 @@ def _outlined(
 def found_for(
     exercise: Exercise, candidates: Iterable[Candidate], *, asked: Collection[Candidate]
 ) -> tuple[Candidate, ...]:
-    """The files that may be meant for an exercise, the likeliest first, with the one match if there is one.
+    """The files that may be meant for an exercise, those ``asked`` for whatever they are called, the
+    likeliest first, with the one match if there is one.
 
     The one in which most functions are written is the match; names decide only where no file has any.
-
-    Args:
-        asked: files that may be meant for it whatever they are called.
     """
     tasks = [task.id for task in exercise.task]
     stem = Path(exercise.module).stem.casefold()

@@ -85,12 +85,8 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     trust: tuple[Source, ...] = ("list", "gradescope")
 
     def due(self, exercise: str, student_names: tuple[str, ...], granted_days: float = 0.0) -> float | None:
-        """When it is due for this student, in seconds since 1970; None if the policy does not say.
-
-        Args:
-            student_names: every id the student goes by.
-            granted_days: more time from elsewhere (the roster); the longest extension counts.
-        """
+        """When it is due for this student, by every name, in seconds since 1970; None if the policy does
+        not say. ``granted_days`` are more time from the roster; the longest extension counts."""
         exact = [item for item in self.deadline if item.exercise == exercise]
         found = exact or [item for item in self.deadline if item.exercise == "*"]
         if not found:
@@ -136,12 +132,8 @@ def read_policy(path: Path) -> tuple[Policy, str]:
 
 
 def parse_policy(text: str, name: str = "The late policy") -> Policy:
-    """A policy from its text.
-
-    Raises:
-        UsageError: it is not a policy; the message names the place.
-        MissingCapabilityError: it is in a newer format.
-    """
+    """A policy from its text; UsageError if it is none, which names the place, MissingCapabilityError if
+    it is in a newer format."""
     with contextlib.suppress(tomllib.TOMLDecodeError):
         version = toml(text).get("format_version")
         if isinstance(version, int) and version > FORMAT_VERSION:

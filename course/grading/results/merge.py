@@ -31,9 +31,8 @@ class Merged:
 def merged(results: Results, new: Roster, *, lasting: bool = False) -> Merged:
     """The new roster, completed from the one of the results.
 
-    Args:
-        lasting: it is to be stored. A Moodle worksheet's numbers are those of one assignment, and do not take
-            the place of what a student is known by in Moodle.
+    ``lasting``: it is to be stored. A Moodle worksheet's numbers are those of one assignment, and do not
+    take the place of what a student is known by in Moodle.
     """
     old, graded = results.roster, results.present()
     if old is None:

@@ -53,14 +53,8 @@ class Graded:
 
 
 def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> Iterator[Graded]:
-    """Verdicts on all entries that have a submission or a problem, in the order of arrival.
-
-    Args:
-        terms: which snapshot judges, and how; it must be unpacked here.
-
-    Raises:
-        CourseError: no grader can work here at all (protection level, content).
-    """
+    """Verdicts on all entries that have a submission or a problem, in the order of arrival, by a snapshot
+    that is unpacked here; a CourseError if no grader can work at all (protection level, content)."""
     with Graders(terms, graders) as those:
         yield from those.grade(entries)
 

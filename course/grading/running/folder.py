@@ -72,12 +72,7 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
 
 
 def make_folder(out: Path, *, exist_ok: bool = True) -> None:
-    """Make a folder for a gradebook, and those above it.
-
-    Raises:
-        FileExistsError: it is there, and should not be.
-        MissingCapabilityError: it cannot be made.
-    """
+    """Make a folder for a gradebook, and those above it; FileExistsError if it should not be there yet."""
     try:
         out.mkdir(parents=True, exist_ok=exist_ok)
     except FileExistsError:

@@ -349,11 +349,9 @@ class _Run:
         )
         for graded in grade(self._left_to_do(), terms):
             yield from self._quizzes()
-            submission = graded.entry.submission
-            yield (
-                Result(self._key(graded.entry, graded.version), graded.entry.told(graded.verdict)),
-                dict(submission.files) if submission else None,
-            )
+            entry, submission = graded.entry, graded.entry.submission
+            result = Result(self._key(entry, graded.version), entry.told(graded.verdict))
+            yield result, dict(submission.files) if submission else None
         yield from self._quizzes()
 
     def _key(self, entry: Entry, judged_by: str = "") -> Key:
@@ -396,10 +394,8 @@ class _Run:
         counts = next(self._book.results(*about), None)
         if counts is None or counts.key.submission_sha256 == entry.sha256:
             return False
-        said = f" {entry.problem.message}" if entry.problem else ""
-        self.summary.stay.append(
-            f"{' '.join(about)}:{said or f' There is no {entry.exercise.module} any more.'}"
-        )
+        said = entry.problem.message if entry.problem else f"There is no {entry.exercise.module} any more."
+        self.summary.stay.append(f"{' '.join(about)}: {said}")
         self.summary.already += 1
         return True
 

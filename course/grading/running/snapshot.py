@@ -48,13 +48,10 @@ FOREIGN = "They are programs, and would run as you, outside any sandbox."
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Graders, frozen at one moment.
+    """Graders, frozen at one moment: as a zip, and unpacked; known by a digest of the names and contents
+    in it.
 
-    Attributes:
-        sha256: digest of the names and contents in it.
-        packed: its content, as a zip.
-        files: the same, unpacked.
-        origins: where its files of the course's content were; empty for one that was stored.
+    ``origins``: where its files of the course's content were; empty for one that was stored.
     """
 
     sha256: str
@@ -219,12 +216,8 @@ def in_use(sha256: str) -> Unpacked | None:
 
 @contextlib.contextmanager
 def frozen(snapshot: Snapshot, exercises: Collection[str] | None = None) -> Iterator[Unpacked]:
-    """Unpack a snapshot for as long as it is needed; graders find it by its digest in their terms.
-
-    Args:
-        exercises: ids, where no others are to be graded: of these there is only what declares them. None for
-            all.
-    """
+    """Unpack a snapshot for as long as it is needed; graders find it by its digest in their terms. Where
+    some exercises alone are to be graded, of the others there is only what declares them."""
     known = _in_use.get(snapshot.sha256)
     if known is not None:
         _unpack(snapshot, known.folder, exercises)

@@ -213,13 +213,8 @@ def _allow(ruleset: int, path: str, access: int) -> None:
 
 
 def apply_limits(*, cpu_s: int, memory: int, file_size: int, descriptors: int) -> None:
-    """Hard limits of this process; soft and hard alike, since pid 1 of a namespace ignores the soft signal.
-
-    Args:
-        cpu_s: seconds of CPU.
-        memory, file_size: bytes.
-        descriptors: open files.
-    """
+    """Hard limits of this process, in s, bytes and open files; soft and hard alike, since pid 1 of a
+    namespace ignores the soft signal."""
     for kind, value in (
         (resource.RLIMIT_CPU, cpu_s),
         (resource.RLIMIT_AS, memory),

@@ -66,11 +66,8 @@ def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
 def fold(function: Any, state: Any, calls: Iterable[list[Any]], keep: list[str] | None = None) -> list[Any]:
     """Pass the state through ``function(state, *args)``, once for each list of arguments.
 
-    Args:
-        keep: of states that are dicts, the keys to record.
-
-    Returns:
-        The states, the first one included. And with ``keep``, the last of them whole, else None.
+    The states, the first one included, and of dicts the keys to ``keep``; then the last of them whole,
+    else None.
     """
     record = [_snapshot(_part(state, keep))]
     for args in calls:

@@ -42,13 +42,11 @@ from course.scoring.verdict import Visibility
 
 
 def companion(exercise_id: str, module: str) -> ModuleType:
-    """A module that public and hidden checks of an exercise share: ``exercises/<id>/checking/<module>.py``.
+    """A module that public and hidden checks of an exercise share:
+    ``exercises/<id>/checking/<module>.py``.
 
     What the course itself asks for, ``questions`` and ``report``, lies beside the checks. It is loaded by
-    path from the course in use, once per process.
-
-    Raises:
-        FileNotFoundError: the exercise has no such file.
+    path from the course in use, once per process; FileNotFoundError if there is none.
     """
     return _load(companion_path(exercise_id, module), f"{exercise_id}_{module}")
 

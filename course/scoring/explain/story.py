@@ -110,13 +110,9 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """The diagnosis of a task's failed checks.
-
-    Attributes:
-        diagnosis: the mistake; None if none is recognised.
-        own: ids of checks that keep their own diagnosis: facts that they saw directly.
-        bare: ids of checks that it is not said of: they saw another mistake, or not this consequence.
-    """
+    """The diagnosis of a task's failed checks, if one is recognised. Checks keep their ``own``: facts that
+    they saw directly. ``bare`` ones saw another mistake, or not this consequence, so that it is not said
+    of them."""
 
     diagnosis: Diagnosis | None
     own: frozenset[str]

@@ -52,13 +52,11 @@ _STRANGE = (TypeError, ValueError, ArithmeticError, LookupError, AttributeError,
 
 
 class Explainer:
-    """Diagnoses of one exercise. Without a table, each check keeps its own diagnosis.
+    """Diagnoses of one exercise. Without a table of its mistakes, each check keeps its own diagnosis.
 
-    Args:
-        table: what is known about its mistakes.
-        questions: its ``questions.py``; see ``answer_numbers``. Where one function returns several things,
-            ``PARTS`` names the thing that each check is about. A mistake in one thing says nothing about
-            another, so each thing has its own story.
+    Its questions are those of ``answer_numbers``. Where one function returns several things, ``PARTS``
+    names the thing that each check is about: a mistake in one says nothing about another, so each has its
+    own story.
     """
 
     def __init__(self, table: Table, questions: ModuleType) -> None:

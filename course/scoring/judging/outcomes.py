@@ -69,13 +69,11 @@ def told_more(
     args: tuple[Any, ...] | None = None,
     fact: str | None = None,
 ) -> CheckResult:
-    """The result of a failed check with what its student's code, or the numbers below it, show beyond doubt.
+    """The result of a failed check with what its student's code, or the numbers below it, show beyond
+    doubt.
 
-    Only where no mistake is named. Numbers are compared where they are shown, so of public checks alone.
-
-    Args:
-        args: of the call that raised.
-        fact: what several numbers of the check have in common, in the place of what one shows.
+    Only where no mistake is named. Numbers are compared where they are shown, so of public checks alone;
+    ``fact`` is what several of the check have in common, and ``args`` are those of the call that raised.
     """
     public = judged.visibility is Visibility.PUBLIC
     if args and judged.input is None and public:

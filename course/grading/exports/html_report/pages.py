@@ -559,14 +559,8 @@ _PAGE = re.compile(r"[1-9][0-9]*\.html")
 
 
 def write_html(target: Path, results: Results, options: ExportOptions) -> Written:
-    """The page about the class, the list of students, and the students' pages beside it.
-
-    Args:
-        target: the page (``.html``), or the folder it goes into.
-
-    Raises:
-        UsageError: files are in the way that no export to this page made.
-    """
+    """The page about the class, at ``target`` or in that folder, the list of students, and the students'
+    pages beside it; a UsageError if files are in the way that no export to this page made."""
     selection = select(results, options)
     page = target.suffix.lower() in {".html", ".htm"} and not target.is_dir()
     path = target if page else target / "report.html"
@@ -580,12 +574,8 @@ def write_html(target: Path, results: Results, options: ExportOptions) -> Writte
 
 
 def _refuse_others(path: Path, students: int, *, named: bool) -> None:
-    """Refuse to replace or remove what no earlier export to this page made: its list of students links to it.
-
-    Args:
-        students: how many pages are numbered.
-        named: the user named the page itself, and not its folder.
-    """
+    """Refuse to replace or remove what no earlier export to this page made: its list of students links to
+    it. So many pages are numbered; ``named``: the user named the page itself, and not its folder."""
     listed, table, folder = (path.with_name(name) for name in ("students.html", "students.csv", "students"))
     numbered = [*folder.iterdir()] if folder.is_dir() else []
     pages = [page for page in numbered if _PAGE.fullmatch(page.name)]

@@ -12,7 +12,7 @@ from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError
 from course.printable import meant, one_line
 from course.progress.history import fingerprint
-from course.scoring.verdict import CheckResult, Verdict
+from course.scoring.verdict import CheckResult, Problem, Verdict
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
@@ -39,13 +39,12 @@ class Attempt:
         """The error to report in place of a verdict that has no checks to show; None if it has."""
         if self.verdict.state == "graded":
             return None
-        error = self.verdict.error
-        message = error.message if error else "The file could not be checked."
-        code = error.code if error else self.verdict.state
-        fix = error.help if error else ""
-        if self.verdict.state == "ungradable":
-            return UngradableError(message, help=fix, code=code)
-        return CourseError(message, help=fix or "This is a fault of the course, not of your work.", code=code)
+        state = self.verdict.state
+        error = self.verdict.error or Problem(state, "The file could not be checked.")
+        if state == "ungradable":
+            return UngradableError(error.message, help=error.help, code=error.code)
+        advice = error.help or "This is a fault of the course, not of your work."
+        return CourseError(error.message, help=advice, code=error.code)
 
     def data(self, version: str, *, one_of_many: bool = False) -> dict[str, object]:
         """The data of its event, of kind "check", in the form that ``history_of`` reads. ``one_of_many``:

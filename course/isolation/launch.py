@@ -175,7 +175,6 @@ class View:
     Attributes:
         interpreter: the Python to run, links resolved.
         prefix: the ``sys.prefix`` that interpreter must report.
-        readable: files and folders.
         masked: folders inside ``readable`` that must look empty: other packages, and this course.
         packages: entries of site-packages that are declared, by name.
     """

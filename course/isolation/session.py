@@ -170,8 +170,6 @@ class Connection:
     """One worker with one submission loaded.
 
     Args:
-        files: the submission: file name to content.
-        main: the file whose functions are called.
         deadline: by which loading must be done.
         asks: ask where the code is if it does not answer in time. Only at home, because the code may have
             chosen the answer.

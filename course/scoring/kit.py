@@ -180,32 +180,27 @@ def fail(
     search_s = clock() - began
     help = help or _ADVICE  # noqa: A001
     bare = message, help
+    guess = found if isinstance(found, Diagnosis) else None
     code: str | None = found if isinstance(found, str) else None
-    if isinstance(found, Diagnosis):
-        code = found.code
-        message = said_once(message, found.looks_like)
-        help = found.advice or help  # noqa: A001
-        first_divergence = first_divergence or found.divergence
-    raise CheckFailed(
-        Finding(
-            message=message,
-            help=help,
-            diagnosis=code,
-            input=None if input is None else plain(input),
-            expected=None if expected is _NOT_SAID else plain(expected),
-            actual=plain(actual),
-            quantity="" if f"`{quantity}`" in message else quantity,
-            units=units,
-            tolerance=_of_plain(tolerance),
-            first_divergence=_of_plain(first_divergence),
-        ),
-        broke,
-        bare,
-        found if isinstance(found, Diagnosis) else None,
-        comparison,
-        looked=callable(diagnose),
-        search_s=search_s,
+    if guess is not None:
+        code = guess.code
+        message = said_once(message, guess.looks_like)
+        help = guess.advice or help  # noqa: A001
+        first_divergence = first_divergence or guess.divergence
+    finding = Finding(
+        message,
+        help,
+        code,
+        input=None if input is None else plain(input),
+        expected=None if expected is _NOT_SAID else plain(expected),
+        actual=plain(actual),
+        quantity="" if f"`{quantity}`" in message else quantity,
+        units=units,
+        tolerance=_of_plain(tolerance),
+        first_divergence=_of_plain(first_divergence),
     )
+    looked = callable(diagnose)
+    raise CheckFailed(finding, broke, bare, guess, comparison, looked=looked, search_s=search_s)
 
 
 def _of_plain(part: _Part) -> _Part:
@@ -609,13 +604,10 @@ def acceleration(fn: Callable[[float, Array, Array], ArrayLike], d: int) -> Coun
             t, q, v = (*args, *(kwargs[name] for name in ("t", "q", "v")[len(args) :]))
             t, q, v = as_number(t, "t"), as_vector(q, d, "q"), as_vector(v, d, "v")
         except (CheckFailed, KeyError, ValueError):
-            fail(
-                "Your code calls accel with something other than a time, a position and a velocity.",
-                help="Call it as accel(t, q, v): a number, then two arrays of the shape your step was given.",
-                diagnose="ACCEL_MISUSED",
-                expected=f"accel(t, q, v) with q and v of shape ({d},)",
-                actual=list(args),
-            )
+            message = "Your code calls accel with something other than a time, a position and a velocity."
+            advice = "Call it as accel(t, q, v): a number, then two arrays of the shape your step was given."
+            wanted = f"accel(t, q, v) with q and v of shape ({d},)"
+            fail(message, help=advice, diagnose="ACCEL_MISUSED", expected=wanted, actual=list(args))
         with np.errstate(all="ignore"):
             return np.asarray(fn(t, q, v), dtype=float)
 

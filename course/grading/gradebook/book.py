@@ -63,7 +63,6 @@ class Gradebook:
     """An open gradebook. What reads rows raises IntegrityError where one is not what was written.
 
     Args:
-        path: the file.
         create: make a new one; otherwise it must exist.
         writing: lock it against all other processes.
 

@@ -56,7 +56,6 @@ class Entry:
     """One student and one exercise.
 
     Attributes:
-        student: the student's id.
         submission: to grade; None if there is nothing.
         problem: why there is nothing; if both are None, the exercise was not handed in.
         unread: it was not asked for, and there is work for it.

@@ -69,7 +69,6 @@ class Effective:
         submitted_at: seconds since 1970, UTC, by the most trusted witness; None if there is none.
         witness: the source of that time.
         flagged_late: the download says "late" but not by how much.
-        override: the instructor's decision, if any.
     """
 
     result: Result
@@ -125,7 +124,6 @@ class Results:
 
     Attributes:
         seed: of the run's hidden inputs.
-        policy: the late policy in force, if any.
         waiting: students whose work a run has still to look at.
         looked: by exercise, whose work was looked at; None if that was not noted.
 

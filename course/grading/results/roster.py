@@ -101,15 +101,9 @@ class Column:
 
 @dataclass
 class Roster:
-    """A class list.
-
-    Attributes:
-        people: the rows, in the order of the file.
-        file: where it was read; empty if it is the one in a gradebook.
-        headings: of that file, if it is known.
-        columns: the heading of each of our columns that it has.
-        assignments: the columns of Canvas' gradebook, by the id of the assignment.
-    """
+    """A class list: the rows, in the order of the file; the file and its headings, if it is not the one in
+    a gradebook; the heading of each of our columns that it has; and the columns of Canvas' gradebook, by
+    the id of the assignment."""
 
     people: tuple[Person, ...]
     file: str = ""

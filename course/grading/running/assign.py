@@ -88,10 +88,9 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
     mine = [item for item in unsettled(results) if item.student == student]
     known = [item.id for item in results.exercises() if item.id != "quiz"]
     if exercise is None:
-        having = [item for item in mine if any(one.name == file for one in item.found.candidates)] or mine
-        proposing = [
-            item for item in having if any(one.name == file and one.proposed for one in item.found.candidates)
-        ]
+        called = [(item, one) for item in mine for one in item.found.candidates if one.name == file]
+        having = [item for item, _ in called] or mine
+        proposing = [item for item, one in called if one.proposed]
         names = {item.exercise for item in proposing or having} or set(known)
         if len(names) != 1:
             message = f"Which exercise {file} is for does not follow."

@@ -166,13 +166,10 @@ class _Grader:
         if exercise.id not in self._sessions:
             if len(self._sessions) == _MOST_OPEN:
                 self._sessions.pop(next(iter(self._sessions))).close()
+            terms, processor = self._config.terms, self._config.processor
             try:
                 session = GradingSession(
-                    exercise,
-                    self._catalog,
-                    scope="full",
-                    terms=self._config.terms,
-                    processor=self._config.processor,
+                    exercise, self._catalog, scope="full", terms=terms, processor=processor
                 )
                 try:
                     _check_worth(exercise, math.fsum(check.points for check in session.checks))

@@ -64,7 +64,6 @@ class Summary:
     """The numbers of a run.
 
     Attributes:
-        states: number of results by state.
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
@@ -74,14 +73,12 @@ class Summary:
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
         unrecognised: files in the class folder with an unknown owner, one sentence each.
-        moved: scores that a second roster changed.
         dropped: students of the earlier roster that it does not have.
         unjudged: checks whose own code broke on a submission, a sentence each.
-        graders: digest of the snapshot that judged.
         pass_marks: of the exercises with results: the points that pass, and all points.
         unsettled: entries that could not be graded and have no score by hand.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
-        write_s: of these, spent on writing the gradebook.
+        write_s: of the seconds, those spent on writing the gradebook.
     """
 
     states: Counter[str] = field(default_factory=Counter)

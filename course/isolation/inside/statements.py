@@ -80,9 +80,8 @@ def pieces(source: str) -> list[Piece]:
     """
     lines = source.split("\n")
     starts = [number for number, line in enumerate(lines) if _BEGINS.match(line)]
-    starts = [
-        at for before, at in zip([None, *starts], starts, strict=False) if not _decorates(lines, before)
-    ]
+    decorated = {after for at, after in itertools.pairwise(starts) if lines[at].startswith("@")}
+    starts = [at for at in starts if at not in decorated]
     ends = [*starts[1:], len(lines)]
     # Each line is tried once, and again only behind something that is not finished.
     left = 8 * len(source) + 100_000
@@ -99,10 +98,6 @@ def pieces(source: str) -> list[Piece]:
         found.append(piece)
         at = upto
     return found
-
-
-def _decorates(lines: list[str], at: int | None) -> bool:
-    return at is not None and lines[at].startswith("@")
 
 
 def _goes_on(error: BaseException) -> bool:

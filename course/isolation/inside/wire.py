@@ -275,10 +275,8 @@ def _put_other(value: Any, parts: Parts, names: Names | None, depth: int) -> int
         return put(value.item() if value.dtype.itemsize <= 8 else float(value), parts, names, depth)
     if isinstance(value, complex):
         return _put_array(np.asarray(complex(value)), parts, names, depth)
-    for base, write in _BASES:
-        if isinstance(value, base):
-            return write(value, parts, names, depth)
-    raise AssertionError(f"{_name_of(value)} is no kind of value")
+    base = next(base for base in _BASES if isinstance(value, base))
+    return _PUT[base](value, parts, names, depth)
 
 
 def _put_lowered(value: Any, parts: Parts, names: Names | None, depth: int) -> int:
@@ -315,16 +313,8 @@ _PUT: dict[type, Callable[[Any, Parts, Names | None, int], int]] = {
     bytes: _put_bytes,
 }
 #: Subclasses arrive as the plain value they extend; bool before int, since every bool is an int.
-_BASES: tuple[tuple[type, Callable[[Any, Parts, Names | None, int], int]], ...] = (
-    (bool, _put_bool),
-    (float, _put_float),
-    (int, _put_int),
-    (str, _put_str),
-    (list, _put_list),
-    (tuple, _put_list),
-    (dict, _put_dict),
-)
-_FAMILIAR = (np.ndarray, np.generic, complex, *(base for base, _ in _BASES))
+_BASES = (bool, float, int, str, list, tuple, dict)
+_FAMILIAR = (np.ndarray, np.generic, complex, *_BASES)
 
 
 # ---

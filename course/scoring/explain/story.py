@@ -261,7 +261,6 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     """What ``diagnoses.json`` holds of an exercise.
 
     Attributes:
-        words: by code.
         made_from: digest of what it was computed from.
         within: relative tolerance of the tasks whose answers are stored directly.
         rows: by task; programs with one mistake come first.

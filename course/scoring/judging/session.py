@@ -66,7 +66,6 @@ class GradingSession:
 
     Args:
         scope: "public" for the checks a student has, "full" for the hidden ones too.
-        terms: protection level, deadline and seed.
         processor: picks the processor to stay on; None picks any.
 
     Attributes:
@@ -325,8 +324,7 @@ class GradingSession:
         if not self._terms.home:
             return
         curve = compared(*failed.comparison) if failed.comparison else None
-        if curve is None and remote.marched:
-            curve = marched(*remote.marched)
+        curve = curve or (marched(*remote.marched) if remote.marched else None)
         if curve is not None:
             self.curves[check.id] = curve
 

@@ -621,7 +621,12 @@ def write_pages(
     listed, table = path.with_name("students.html"), path.with_name("students.csv")
     chosen = [noted[name] for name in exercises]
     write_bytes(listed, index_page(results, shown, chosen, _link(path)).encode())
-    write_bytes(table, csv_bytes(("page", "student", "name", "email", *exercises), map(_cells, shown)))
+    cells = []
+    for row in shown:
+        person = (row.person.name, row.person.email) if row.person else ("", "")
+        scores = (number(score[0]) if score else "" for score in row.scores)
+        cells.append([row.href, row.student, *person, *scores])
+    write_bytes(table, csv_bytes(("page", "student", "name", "email", *exercises), cells))
     write_bytes(path, class_page(results, tally, links, _link(listed)).encode())
     _remove_others(folder, {f"{row.place}.html" for row in shown})
     return [path, listed, table, folder]
@@ -640,11 +645,6 @@ def _by_student(results: Results, found: Iterable[Effective]) -> Iterator[tuple[
         else:
             yield student, list(group)
     yield from ((student, group) for student, group in held.items() if group)
-
-
-def _cells(row: IndexRow) -> list[str]:
-    person = (row.person.name, row.person.email) if row.person else ("", "")
-    return [row.href, row.student, *person, *(number(score[0]) if score else "" for score in row.scores)]
 
 
 def _remove_others(folder: Path, written: set[str]) -> None:

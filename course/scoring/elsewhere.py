@@ -181,23 +181,15 @@ def newer(failure: StudentFailure, code: str = "") -> str:
     return ""
 
 
-#: What Python says of a line that it cannot read -> what to do about it.
-_UNREAD = (
-    (
-        r"^invalid (?:non-printable )?character",
-        "It came with a text that was pasted: delete that character and type it yourself.",
-    ),
-    (
-        r"^invalid (?:decimal|imaginary|hexadecimal) literal",
-        "A letter follows a number. Is a `*` missing between them?",
-    ),
-)
-
-
 def unread(failure: StudentFailure, code: str = "") -> str:
     """What to do about a line that Python cannot read, as a sentence or two; "" where nothing fits."""
-    found = (advice for said, advice in _UNREAD if re.search(said, failure.message))
-    return newer(failure, code) or next(found, "")
+    if advice := newer(failure, code):
+        return advice
+    if re.search(r"^invalid (?:non-printable )?character", failure.message):
+        return "It came with a text that was pasted: delete that character and type it yourself."
+    if re.search(r"^invalid (?:decimal|imaginary|hexadecimal) literal", failure.message):
+        return "A letter follows a number. Is a `*` missing between them?"
+    return ""
 
 
 # ---

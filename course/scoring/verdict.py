@@ -13,9 +13,6 @@ from typing import Any
 
 import msgspec
 
-# ---
-# Where a trajectory left the right one; a separate module, so that reading a verdict does not load numpy.
-
 
 class Divergence(msgspec.Struct, frozen=True):
     """The first place where a trajectory left the reference. ``t`` in s."""

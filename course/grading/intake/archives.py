@@ -123,15 +123,13 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
 
 
 _VERSION = re.compile(r"[\w.+-]{1,40}")
+_TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 
 
 def _written(told: Any) -> str:
     """The versions that a manifest claims, as part of a sentence."""
     said = [(name, told.get(key)) for key, name in _TOOLS] if isinstance(told, dict) else []
     return " and ".join(f"{name} {v}" for name, v in said if isinstance(v, str) and _VERSION.fullmatch(v))
-
-
-_TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 
 
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:

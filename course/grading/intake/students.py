@@ -122,7 +122,7 @@ def read_student(
 def _unforeseen(error: Exception) -> Problem:
     # Students read this too: of the system's errors only the reason, which has no path in it.
     reason = (error.strerror if isinstance(error, OSError) else str(error)) or "no reason was given"
-    message = f"It cannot be read: {type(error).__name__}, {one_line(reason, _LONGEST)}."
+    message = f"It cannot be read: {type(error).__name__}, {one_line(reason, 200)}."
     return Problem("unreadable", message, "Look at it; `course grade assign` takes any file by its path.")
 
 
@@ -284,9 +284,6 @@ def witnesses(student: Student, exercise: str, sha256: str, path: Path | None) -
 
 
 _PERMISSIONS = "Check the permissions of the file and of the folders above it."
-_LONGEST = 200
-
-
 #: Problems that a file under another name, in another encoding, or a choice between files, would solve.
 _FOR_TRIAGE = {"no_file", "ambiguous_files", "refused_archive", "syntax_error"}
 

@@ -79,18 +79,18 @@ def room_for(size: int, begun: bytes) -> memoryview:
 class Kind(enum.IntEnum):
     """The kind of a frame. The first group goes to the worker, the second comes from it."""
 
-    LOAD = 1  # [files, module name]
+    LOAD = 1  # [files, module name, functions that are needed, or none for all]
     CALL = 2  # [function, args, kwargs, inspect]
     MARCH = 3  # [step, [[rhs, q0, v0, t0, h, n], ...]]
     REPLY = 4  # value of a callback
     EACH = 6  # [function, [args, ...]]
     FOLD = 7  # [function, state, [args, ...], keys to keep or None]
-    REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
+    REPLY_RAISE = 5  # "exception's name: message": the callback refused its arguments
     READY = 15  # None: locked down, and nothing of the submission has run yet
     LOADED = 16  # names of functions, and what was left out of the module
-    REFUSED = 17  # {stage, type, message, line, text}
+    REFUSED = 17  # as RAISED, with stage; instead of READY, the layer that could not be locked down
     RESULT = 18  # value
-    RAISED = 19  # {type, message, line, function, frames}
+    RAISED = 19  # {type, message, frames, bases}; of a SyntaxError line and text, too
     CALLBACK = 20  # [number of the callable, kwargs or None, *args]
     STUCK = 21  # {frames, lines}: frames that were there at each look, and lines of the innermost
 

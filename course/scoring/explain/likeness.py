@@ -312,7 +312,7 @@ def _of_all(a: Array, e: Array, given: Mapping[str, Any]) -> str:
     if not a.any():
         return ""
     if _same(a, np.full_like(a, a.flat[0])) and np.ptp(e) > 0:
-        return f"All your values are the same{_times(a)}."
+        return f"All your values are the same{'' if a.size < 3 else f': {a.flat[0]:.6g}'}."
     some = e != 0.0
     if np.count_nonzero(some) > 1 and not a[~some].any():
         ratios = a[some] / e[some]
@@ -323,10 +323,6 @@ def _of_all(a: Array, e: Array, given: Mapping[str, Any]) -> str:
         by = float(a.flat[0] - e.flat[0])
         return f"Every value is too {'large' if by > 0 else 'small'} by the same {abs(by):.6g}."
     return ""
-
-
-def _times(a: Array) -> str:
-    return "" if a.size < 3 else f": {a.flat[0]:.6g}"
 
 
 def _of_lengths(a: Array, e: Array) -> str:

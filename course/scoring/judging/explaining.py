@@ -90,7 +90,9 @@ class Explainer:
             gone = any(result.status in _GONE for result in of_task)
             names = frozenset(self._parts.get(check.id, task) for check in checks)
             said = {} if gone else self._answer_sums(task, remote, names)
-            culprits = _culprits(task, callers, wrong)
+            # The wrong functions that it calls: those that call no wrong one themselves, if there are any.
+            called = [name for name in callers.get(task, ()) if name in wrong]
+            culprits = [name for name in called if wrong.isdisjoint(callers.get(name, ()))] or called
             past = [heard[check.id] for check in checks if check.id in heard]
             kept = bool(again and not gone and not culprits and _kept(past, task, again))
             for name in dict.fromkeys(self._parts.get(check.id, task) for check in checks):
@@ -124,12 +126,6 @@ class Explainer:
         wrong = sums and not is_right(self._table, name, sums)
         fits = matching(self._table, name, sums) if sums and wrong else ()
         return story_of(failures, fits, self._words, kept=kept)
-
-
-def _culprits(task: str, callers: Mapping[str, tuple[str, ...]], wrong: set[str]) -> list[str]:
-    """The wrong functions that a task calls: those that call no wrong one themselves, if there are any."""
-    called = [name for name in callers.get(task, ()) if name in wrong]
-    return [name for name in called if wrong.isdisjoint(callers.get(name, ()))] or called
 
 
 def _kept(past: list[Past], task: str, again: Again) -> bool:

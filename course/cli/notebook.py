@@ -25,8 +25,8 @@ from course.cli.work.verdict import show_verdict
 from course.errors import NotFoundError, UngradableError, UsageError
 from course.extras import require
 from course.handed_in import attempts
-from course.handed_in.cells import code_cells, read_notebook
-from course.handed_in.notebook import notebook_source
+from course.handed_in.limits import read_notebook
+from course.handed_in.notebook import code_cells, notebook_source
 from course.notebooks import server
 from course.notebooks.build import FOLDERS, NBGRADER, WORKSPACE, Generated, Layout, generate
 from course.notebooks.merge import CannotMergeError, is_untouched, merged

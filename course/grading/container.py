@@ -15,7 +15,7 @@ import json
 import sys
 import traceback
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,12 +29,12 @@ from course.grading.exports.platforms import results_body
 from course.grading.exports.selection import Written
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.downloads import Place, Student
-from course.grading.intake.students import Entry, read_student
+from course.grading.intake.students import read_student
 from course.grading.results.effective import Effective
 from course.grading.running.batch import grade_all, without_grading
 from course.grading.running.snapshot import Snapshot, Unpacked, frozen
 from course.scoring.judging.submission import Terms
-from course.scoring.verdict import Problem, Verdict
+from course.scoring.verdict import Problem
 
 #: The graders, beside the configuration.
 SNAPSHOT = "graders.zip"
@@ -126,8 +126,14 @@ def grade(folder: Path, config: dict[str, Any], graders: Unpacked) -> dict[str, 
         drawn = hashlib.sha256(f"{config['seed']} {entry.sha256}".encode()).digest()
         seed = int.from_bytes(drawn[:8]) >> 1
         terms = Terms(None, config["at_least"], config["timeout"], seed, graders.snapshot.sha256)
-        verdict = _judged(entry, terms)
-        _log(verdict)
+        try:
+            (graded,) = grade_all([entry], terms)
+            verdict = entry.told(graded.verdict)
+        except CourseError as error:
+            problem = Problem(error.code, error.message, error.help)
+            verdict = without_grading(entry, "grader_error", problem)
+        level = verdict.isolation or "no level"
+        print(f"{verdict.exercise}: {verdict.state} at {level}", verdict.error or "")  # noqa: T201
         key = Key("submission", entry.exercise.id, entry.sha256, graders.version(entry.exercise.id), seed)
         score = None if verdict.state == "grader_error" else verdict.score
         found.append(Effective(Result(key, verdict), score, verdict.max_score, verdict.passed))
@@ -142,45 +148,21 @@ def grade(folder: Path, config: dict[str, Any], graders: Unpacked) -> dict[str, 
     return body
 
 
-def _judged(entry: Entry, terms: Terms) -> Verdict:
-    try:
-        (graded,) = grade_all([entry], terms)
-    except CourseError as error:
-        return without_grading(entry, "grader_error", Problem(error.code, error.message, error.help))
-    return entry.told(graded.verdict)
-
-
-def _log(verdict: Verdict) -> None:
-    """A line that only the instructor sees."""
-    level = verdict.isolation or "no level"
-    print(f"{verdict.exercise}: {verdict.state} at {level}", verdict.error or "")  # noqa: T201
-
-
 def write_autograder(
     path: Path, catalog: Catalog, exercises: Sequence[Exercise], *, seed: int, timeout: float, asked: bool
 ) -> Written:
     """Write the zip.
 
-    Args:
-        seed: of the hidden inputs, together with the submission: equal files meet equal inputs.
-        timeout: seconds of CPU time per check.
-        asked: the exercises were named, so a missing one is reported.
-
-    Raises:
-        MissingCapabilityError: this installation has no hidden graders or no model solutions, or the file
-            cannot be written.
+    Hidden inputs follow from the seed together with the submission: equal files meet equal inputs. Each
+    check has ``timeout`` seconds of CPU time. Exercises that were ``asked`` for by name are reported where
+    they are missing. MissingCapabilityError: this installation has no hidden graders or no model
+    solutions, or the file cannot be written.
     """
     catalog.content.instructors()
     ids = [exercise.id for exercise in exercises]
     snapshot = Snapshot.take(catalog.content, ids)
-    config = {
-        "exercises": ids,
-        "required": asked,
-        "seed": seed,
-        "timeout": timeout,
-        "at_least": "L1",
-        "graders": snapshot.sha256,
-    }
+    terms = {"seed": seed, "timeout": timeout, "at_least": "L1", "graders": snapshot.sha256}
+    config = {"exercises": ids, "required": asked, **terms}
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as packed:
         wanted = " ".join(f"'{requirement_of(name).text}'" for name in CONTAINER.packages)
@@ -189,8 +171,11 @@ def write_autograder(
         _put(packed, "run_autograder", _RUN.replace("{module}", CONTAINER.module).encode(), executable=True)
         _put(packed, "config.json", json.dumps(config, indent=1).encode())
         _put(packed, SNAPSHOT, snapshot.packed)
-        for name, source in _package():
-            _put(packed, f"course/{name}", source.read_bytes())
+        # The program, which reads what was handed in and starts the grader.
+        for source in sorted(_PACKAGE.rglob("*")):
+            inner = source.relative_to(_PACKAGE)
+            if source.is_file() and not _CONTENT.intersection(inner.parts):
+                _put(packed, f"course/{inner.as_posix()}", source.read_bytes())
     write_bytes(path, buffer.getvalue())
     notes = [
         "The zip holds hidden graders and model solutions: upload it, and give it to no student.",
@@ -198,14 +183,6 @@ def write_autograder(
         "could read the graders, and write its own result.",
     ]
     return Written(paths=[path], rows=len(exercises), notes=notes)
-
-
-def _package() -> Iterator[tuple[str, Path]]:
-    """The program, which reads what was handed in and starts the grader: each file's name, and the file."""
-    for source in sorted(_PACKAGE.rglob("*")):
-        inner = source.relative_to(_PACKAGE)
-        if source.is_file() and not _CONTENT.intersection(inner.parts):
-            yield inner.as_posix(), source
 
 
 def _put(packed: zipfile.ZipFile, name: str, content: bytes, *, executable: bool = False) -> None:

@@ -67,7 +67,10 @@ def served(source: IO[bytes]) -> Iterator[bytes]:
         at_work = waiting.unfinished_tasks
         waiting.put(None)
         if at_work:
-            _interrupt_main()
+            if hasattr(signal, "pthread_kill"):  # which also ends a wait for a worker's answer
+                signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+            else:
+                _thread.interrupt_main()
             time.sleep(_LAST_S)
             os._exit(1)
 
@@ -78,12 +81,11 @@ def served(source: IO[bytes]) -> Iterator[bytes]:
 
 
 class Servant:
-    """A process that reads strangers' files; started when it is first needed, and again after one killed it.
+    """A process that reads strangers' files; started when it is first needed, and again after one killed
+    it.
 
-    Args:
-        module: its program: it writes a frame when it is ready, then answers each frame with one.
-        arguments: of that program.
-        wall_s: seconds after which it is killed over a question.
+    Its program writes a frame when it is ready, then answers each frame with one, or is killed after
+    ``wall_s``.
     """
 
     def __init__(self, module: str, *arguments: str, wall_s: float) -> None:
@@ -92,11 +94,7 @@ class Servant:
         self._process: subprocess.Popen[bytes] | None = None
 
     def ask(self, question: Any, most: int | None = None) -> bytes | None:
-        """Its answer; None if it died over the question, took too long, or says more than ``most`` bytes.
-
-        Raises:
-            InternalError: it does not start.
-        """
+        """Its answer; None if it died over the question, took too long, or says more than ``most`` bytes."""
         process = self._process or self._start()
         assert process.stdin is not None
         assert process.stdout is not None
@@ -145,13 +143,6 @@ class Servant:
 def path_with(folder: Path) -> str:
     """This process's ``PYTHONPATH`` with a folder before all others."""
     return os.pathsep.join(filter(None, (str(folder), os.environ.get("PYTHONPATH"))))
-
-
-def _interrupt_main() -> None:
-    if hasattr(signal, "pthread_kill"):  # which also ends a wait for a worker's answer
-        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
-    else:
-        _thread.interrupt_main()
 
 
 def limit_memory(size: int) -> None:

@@ -47,12 +47,7 @@ _Records = Annotated[tuple[_Record, ...], msgspec.Meta(max_length=MAX_RECORDS)]
 
 @dataclass(frozen=True, slots=True)
 class QuizScore:
-    """The attempt that counts.
-
-    Attributes:
-        attempts: how many were handed in.
-        repeated: how many of them did not count because an earlier one had the same seed.
-    """
+    """The attempt that counts, how many were handed in, and how many of these had an earlier one's seed."""
 
     result: Result
     seed: int
@@ -63,14 +58,14 @@ class QuizScore:
 def score_record(bank: Bank, record: object) -> QuizScore | None:
     """Score the attempts of one student again; None if there are none.
 
-    Args:
-        bank: the questions of the course that grades.
-        record: the value of "quiz" in ``submission.json``, unchecked; it may be anything.
-
-    Raises:
-        UngradableError: ``quiz_record_inconsistent``; the message says which attempt and what is wrong.
+    The record is the value of "quiz" in ``submission.json``, unchecked; it may be anything. An
+    UngradableError says which attempt is wrong, and how.
     """
-    attempts = _read(record)
+    # Words in place of a record are the reason why there is none.
+    fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)
+    if fault is not None:
+        raise _inconsistent(f"The quiz record is malformed ({fault}).")
+    attempts: tuple[_Record, ...] = msgspec.convert(record, _Records)
     if not attempts:
         return None
     results: dict[int, Result] = {}
@@ -133,14 +128,6 @@ def quiz_version(bank: Bank) -> str:
     return hashlib.sha256(f"{GRADER_REVISION}/{bank.digest}".encode()).hexdigest()
 
 
-def _read(record: object) -> tuple[_Record, ...]:
-    """The attempts; words in place of a record become the reason why there are none."""
-    fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)
-    if fault is not None:
-        raise _inconsistent(f"The quiz record is malformed ({fault}).")
-    return msgspec.convert(record, _Records)
-
-
 def _fault(record: object) -> str | None:
     try:
         msgspec.convert(record, _Records)
@@ -178,12 +165,11 @@ def _score(bank: Bank, attempt: _Record, which: str) -> Result:
 
 def _inconsistent(message: str, version: str = "") -> UngradableError:
     made = f" The attempt says it was made with version {version!a} of the course." if version else ""
-    return UngradableError(
-        message,
-        help="Ask the student to run `course submit` again and upload the zip unchanged; where the quiz "
-        f"changed in between, grade with the version it was taken with.{made}",
-        code=CODE,
+    advice = (
+        "Ask the student to run `course submit` again and upload the zip unchanged; where the quiz "
+        f"changed in between, grade with the version it was taken with.{made}"
     )
+    return UngradableError(message, help=advice, code=CODE)
 
 
 def _check(marked: MarkedQuestion, seed: int) -> CheckResult:

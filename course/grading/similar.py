@@ -7,6 +7,7 @@ few right solutions.
 """
 
 import ast
+import contextlib
 import hashlib
 import math
 import os
@@ -15,7 +16,6 @@ from collections import Counter, deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Self
 
 import msgspec
 
@@ -62,12 +62,8 @@ _DOCUMENTED = (ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
 class Prints(msgspec.Struct, frozen=True):
-    """Fingerprints of one source.
-
-    Attributes:
-        marks: hash -> the lines it was seen on, as (first, last) pairs, 1 first.
-        whole: digest of the whole sequence of nodes; equal for sources that differ in names and layout only.
-    """
+    """Fingerprints of one source: by hash, the lines it was seen on, as (first, last) pairs from 1 on; and a
+    digest of all nodes, which is equal for sources that differ in names and layout only."""
 
     marks: dict[int, tuple[tuple[int, int], ...]]
     whole: str
@@ -90,7 +86,10 @@ def fingerprints(source: bytes) -> Prints | None:
         run = min(RUN, len(kinds))
         if run < _SHORTEST:
             continue
-        for number, start in _winnowed([_hash(kinds[i : i + run]) for i in range(len(kinds) - run + 1)]):
+        runs = ("\0".join(kinds[i : i + run]).encode() for i in range(len(kinds) - run + 1))
+        # A hash that is the same in every process.
+        hashes = [int.from_bytes(hashlib.blake2b(one, digest_size=6).digest(), "little") for one in runs]
+        for number, start in _winnowed(hashes):
             lines = [line for _, line in walked[start : start + run]]
             marks.setdefault(number, set()).add((min(lines), max(lines)))
     found = {number: tuple(sorted(places)) for number, places in marks.items()}
@@ -99,10 +98,9 @@ def fingerprints(source: bytes) -> Prints | None:
 
 def _parts(tree: ast.Module) -> Iterator[ast.AST]:
     """Functions and classes of a module, each by itself: their order means nothing. The rest comes last."""
-    definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     rest = ast.Module([], [])
     for statement in tree.body:
-        if isinstance(statement, definitions):
+        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             yield statement
         else:
             rest.body.append(statement)
@@ -134,11 +132,6 @@ def _kind(node: ast.AST) -> str:
     return type(node).__name__
 
 
-def _hash(kinds: list[str]) -> int:
-    """A hash that is the same in every process."""
-    return int.from_bytes(hashlib.blake2b("\0".join(kinds).encode(), digest_size=6).digest(), "little")
-
-
 def _winnowed(hashes: list[int]) -> Iterator[tuple[int, int]]:
     """The smallest hash of every window, of equal ones the rightmost; each once."""
     last = -1
@@ -151,23 +144,17 @@ def _winnowed(hashes: list[int]) -> Iterator[tuple[int, int]]:
             yield smallest, at
 
 
-class Parser:
+class Parser(Servant):
     """A process that fingerprints sources; started again if one of them kills it."""
 
     def __init__(self) -> None:
-        self._servant = Servant("course.grading.similar", wall_s=_WALL_S)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._servant.close()
+        super().__init__("course.grading.similar", wall_s=_WALL_S)
 
     def __call__(self, source: bytes) -> Prints | None:
         """The fingerprints of a source; None if it is not Python, takes too long or is too long."""
         if len(source) > LONGEST:
             return None
-        frame = self._servant.ask(source)
+        frame = self.ask(source)
         return msgspec.msgpack.decode(frame, type=Prints | None) if frame is not None else None
 
 
@@ -194,12 +181,7 @@ MAX_PAIRS = 200
 
 @dataclass(frozen=True)
 class Document:
-    """One source that is compared.
-
-    Attributes:
-        label: the student, or the name of the course's own file.
-        own: the course's own code: compared with, but never reported as a copy.
-    """
+    """One source that is compared. The course's own code is compared with, but never reported as a copy."""
 
     label: str
     source: str
@@ -209,13 +191,9 @@ class Document:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two documents of one exercise.
-
-    Attributes:
-        share: how much of the smaller one, by weight, the other has too; 1 for all of it.
-        passages: lines of the first and of the second that correspond, as (first, last).
-        lines: of the first one in such passages.
-    """
+    """Two documents of one exercise: how much of the smaller one, by weight, the other has too; the lines
+    of the first and of the second that correspond, as (first, last); and how many of the first are in
+    them."""
 
     exercise: str
     first: Document
@@ -227,12 +205,8 @@ class Pair:
 
 @dataclass(frozen=True)
 class Group:
-    """Three or more submissions of one exercise that similar pairs link.
-
-    Attributes:
-        members: the students, by name; each is in a pair with another, not with all.
-        share: of the weakest pair among them.
-    """
+    """Three or more submissions of one exercise that similar pairs link, each with another, not with all;
+    ``share`` is that of the weakest pair."""
 
     exercise: str
     members: tuple[str, ...]
@@ -241,14 +215,9 @@ class Group:
 
 @dataclass
 class Similar:
-    """The result of a comparison.
-
-    Attributes:
-        pairs: the most alike first, at most ``MAX_PAIRS``.
-        groups: the largest first, made from all pairs.
-        unreadable: "student exercise" of each file that is not Python, or is too long to compare.
-        left_out: pairs beyond ``MAX_PAIRS``.
-    """
+    """The result of a comparison: at most ``MAX_PAIRS`` pairs, the most alike first; groups from all
+    pairs, the largest first; and "student exercise" of each file that is not Python, or is too long to
+    compare."""
 
     pairs: list[Pair] = field(default_factory=list)
     groups: list[Group] = field(default_factory=list)
@@ -258,31 +227,19 @@ class Similar:
 
 
 def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, at_least: float) -> Similar:
-    """Compare all submissions of each exercise with each other and with the course's own code.
-
-    Args:
-        exercises: ids; empty takes all that were graded.
-        at_least: the smallest share to report.
-
-    Raises:
-        NotFoundError: no submission of such an exercise was graded.
-    """
+    """Compare all submissions of each exercise, or of some, with each other and with the course's own
+    code, and report shares of ``at_least`` so much. A NotFoundError if no submission of such an exercise
+    was graded."""
     found = Similar()
-    graded = [
-        item.id for item in results.exercises() if item.id != QUIZ and item.id in catalog.exercise_ids()
-    ]
+    known = set(catalog.exercise_ids()) - {QUIZ}
+    graded = [item.id for item in results.exercises() if item.id in known]
     unknown = [name for name in exercises if name not in graded]
     if unknown:
-        raise NotFoundError(
-            f"The gradebook has no code for the exercise {unknown[0]!r}.",
-            help=f"It has {', '.join(graded) or 'none'}.",
-            code="exercise_not_found",
-        )
-    with Parser() as parse:
+        message = f"The gradebook has no code for the exercise {unknown[0]!r}."
+        raise NotFoundError(message, help=f"It has {', '.join(graded) or 'none'}.", code="exercise_not_found")
+    with contextlib.closing(Parser()) as parse:
         shipped = _shipped(catalog, parse) if graded else {}
-        for name in graded:
-            if exercises and name not in exercises:
-                continue
+        for name in (name for name in graded if not exercises or name in exercises):
             exercise = catalog.exercise(name)
             documents = list(_submissions(results, exercise, parse, found))
             documents += _own(catalog, exercise, shipped, parse)
@@ -391,7 +348,9 @@ def _pairs(exercise: str, documents: list[Document], ignored: set[int], at_least
         share = sum(weights[mark] for mark in shared) / smaller if smaller else 0.0
         copy = first.prints.whole == second.prints.whole
         if share >= at_least and (copy or len(shared) >= _FEWEST):
-            yield _pair(exercise, first, second, min(share, 1.0), shared)
+            passages = sorted((first.prints.marks[mark][0], second.prints.marks[mark][0]) for mark in shared)
+            lines = {line for (start, end), _ in passages for line in range(start, end + 1)}
+            yield Pair(exercise, first, second, min(share, 1.0), tuple(passages), len(lines))
 
 
 def _candidates(documents: list[Document], having: dict[int, list[int]]) -> set[tuple[int, int]]:
@@ -412,12 +371,6 @@ def _candidates(documents: list[Document], having: dict[int, list[int]]) -> set[
     found = {pair for pair, count in common.items() if count >= _FEWEST}
     copies = ((number, other) for number, other in enumerate(first) if number != other)
     return found | {(min(pair), max(pair)) for pair in copies}
-
-
-def _pair(exercise: str, first: Document, second: Document, share: float, shared: list[int]) -> Pair:
-    passages = sorted((first.prints.marks[mark][0], second.prints.marks[mark][0]) for mark in shared)
-    lines = {line for (start, end), _ in passages for line in range(start, end + 1)}
-    return Pair(exercise, first, second, share, tuple(passages), len(lines))
 
 
 # ---
@@ -444,13 +397,11 @@ def _sides(pair: Pair) -> Iterator[tuple[Document, list[tuple[int, str, bool, li
         begins: dict[int, list[int]] = {}
         for at, block in enumerate(blocks, 1):
             begins.setdefault(block[side][0], []).append(at)
-        yield (
-            document,
-            [
-                (number, line.expandtabs(4), number in marked and bool(line.strip()), begins.get(number, []))
-                for number, line in enumerate(document.source.splitlines(), 1)
-            ],
-        )
+        rows = []
+        for number, line in enumerate(document.source.splitlines(), 1):
+            theirs = number in marked and bool(line.strip())
+            rows.append((number, line.expandtabs(4), theirs, begins.get(number, [])))
+        yield document, rows
 
 
 #: So many passages may be open at one place; a file with all of it on one line has thousands there.

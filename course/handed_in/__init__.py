@@ -1,7 +1,6 @@
 """Turns a student's submission into a module that can be graded.
 
 limits     what is taken, and how large it may be
-cells      code cells of a notebook as plain Python
-notebook   the module that those cells stand for, and how its lines are told as cells
+notebook   code cells as plain Python, the module that they stand for, and how its lines are told as cells
 attempts   the public checks on it at home, and what is kept of them in the record
 """

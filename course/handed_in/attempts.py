@@ -12,7 +12,7 @@ from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError
 from course.printable import meant, one_line
 from course.progress.history import fingerprint
-from course.scoring.verdict import CheckResult, Verdict
+from course.scoring.verdict import CheckResult, Problem, Verdict
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
@@ -23,13 +23,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One run of the public checks.
-
-    Attributes:
-        only: the one requested check or function; empty for all.
-        printed: the module's output while it was loaded.
-        curves: by id of a failed check, the student's curve and the right one.
-    """
+    """One run of the public checks, or of the one that was asked for (``only``); what the module printed
+    while it was loaded; and by id of a failed check the student's curve and the right one."""
 
     exercise: Exercise
     source: bytes
@@ -44,21 +39,16 @@ class Attempt:
         """The error to report in place of a verdict that has no checks to show; None if it has."""
         if self.verdict.state == "graded":
             return None
-        error = self.verdict.error
-        message = error.message if error else "The file could not be checked."
-        code = error.code if error else self.verdict.state
-        fix = error.help if error else ""
-        if self.verdict.state == "ungradable":
-            return UngradableError(message, help=fix, code=code)
-        return CourseError(message, help=fix or "This is a fault of the course, not of your work.", code=code)
+        state = self.verdict.state
+        error = self.verdict.error or Problem(state, "The file could not be checked.")
+        if state == "ungradable":
+            return UngradableError(error.message, help=error.help, code=error.code)
+        advice = error.help or "This is a fault of the course, not of your work."
+        return CourseError(error.message, help=advice, code=error.code)
 
     def data(self, version: str, *, one_of_many: bool = False) -> dict[str, object]:
-        """The data of its event, of kind "check", in the form that ``history_of`` reads.
-
-        Args:
-            version: of the course's content.
-            one_of_many: every exercise was checked, so the student did not choose this one.
-        """
+        """The data of its event, of kind "check", in the form that ``history_of`` reads. ``one_of_many``:
+        every exercise was checked, so the student did not choose this one."""
         verdict = self.verdict
         return {
             "state": verdict.state,
@@ -85,14 +75,8 @@ def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
 
 
 def attempt(exercise: Exercise, catalog: Catalog, submission: Submission, only: str = "") -> Attempt:
-    """Run the public checks once.
-
-    Args:
-        only: run this check and those it requires, and no others.
-
-    Raises:
-        NotFoundError: there is no check ``only``.
-    """
+    """Run the public checks once, or one of them and those it requires; a NotFoundError if there is none
+    of that name."""
     begin = time.perf_counter()
     with open_session(exercise, catalog) as session:
         made = attempt_in(session, submission, begin, only)
@@ -100,18 +84,13 @@ def attempt(exercise: Exercise, catalog: Catalog, submission: Submission, only: 
 
 
 def attempt_in(session: GradingSession, submission: Submission, begin: float, only: str = "") -> Attempt:
-    """The same in a session that stays open.
-
-    Args:
-        begin: when it began, by ``time.perf_counter``.
-    """
+    """The same in a session that stays open; it began at ``begin``, by ``time.perf_counter``."""
     exercise = session.exercise
     known = [check.id for check in session.checks]
     if only and only not in known:
+        message = f"{exercise.id} has no public check called {only!r}."
         raise NotFoundError(
-            f"{exercise.id} has no public check called {only!r}.",
-            help=meant(only, known, f"Known: {', '.join(known)}."),
-            code="check_not_found",
+            message, help=meant(only, known, f"Known: {', '.join(known)}."), code="check_not_found"
         )
     verdict = session.grade(submission, only=[only] if only else ())
     seconds, source = time.perf_counter() - begin, submission.files[exercise.module]

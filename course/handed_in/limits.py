@@ -3,7 +3,9 @@
 What a student is told at home and what a grading run refuses are read from here, so they cannot differ.
 """
 
-from __future__ import annotations
+from pathlib import Path
+
+from course.errors import UsageError
 
 #: The suffixes of files with a student's functions, and of all that can be handed in.
 SOURCES = (".py", ".ipynb")
@@ -33,3 +35,16 @@ MAX_STREAMED = 100 << 20
 #: The member that says what an archive holds, and the version of its form.
 MANIFEST = "submission.json"
 FORMAT_VERSION = 1
+
+
+def read_notebook(path: Path) -> bytes:
+    try:
+        if not path.is_file():
+            raise UsageError(f"{path} is not a file.", help="Name a notebook.", code="not_a_file")
+        if path.stat().st_size > MAX_NOTEBOOK:
+            message = f"{path} is larger than {MAX_NOTEBOOK >> 20} MB."
+            raise UsageError(message, help="Clear its outputs and save it.", code="too_large")
+        return path.read_bytes()
+    except OSError as error:
+        message = f"{path} cannot be read ({error.strerror or error})."
+        raise UsageError(message, help="Check its permissions.") from error

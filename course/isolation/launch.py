@@ -24,7 +24,7 @@ from course.isolation.failures import IsolationError
 _PACKAGE = "course_worker"
 _COPIED = (
     "isolation/inside/wire.py",
-    *(f"isolation/inside/{name}.py" for name in ("loops", "statements", "declared", "loading")),
+    *(f"isolation/inside/{name}.py" for name in ("loops", "statements", "loading")),
     *(f"isolation/inside/{name}.py" for name in ("worker", "lockdown", "zygote")),
     "physics/systems.py",
 )
@@ -66,10 +66,8 @@ def sweep_after_the_dead() -> None:
 def _is_alive(pid: int) -> bool:
     try:
         os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
+    except OSError as error:
+        return not isinstance(error, ProcessLookupError)
     return True
 
 
@@ -94,11 +92,8 @@ def command(view: View, folder: str, config: dict[str, Any]) -> list[str]:
 
 
 def environment() -> dict[str, str]:
-    kept = {
-        name: os.environ[name]
-        for name in ("SYSTEMROOT", "PATH")
-        if name in os.environ and sys.platform == "win32"
-    }
+    names = {"SYSTEMROOT", "PATH"} & os.environ.keys() if sys.platform == "win32" else ()
+    kept = {name: os.environ[name] for name in names}
     return {**kept, **ONE_THREAD, "LANG": "C.UTF-8", "HOME": "/nonexistent", "PYTHONHASHSEED": "0"}
 
 
@@ -180,7 +175,6 @@ class View:
     Attributes:
         interpreter: the Python to run, links resolved.
         prefix: the ``sys.prefix`` that interpreter must report.
-        readable: files and folders.
         masked: folders inside ``readable`` that must look empty: other packages, and this course.
         packages: entries of site-packages that are declared, by name.
     """
@@ -208,14 +202,12 @@ def _without(top: Path, masked: tuple[Path, ...]) -> list[Path]:
         children = sorted(top.iterdir())
     except OSError:
         return []
-    return [
-        path for child in children if not _leads_around(child, masked) for path in _without(child, masked)
-    ]
-
-
-def _leads_around(path: Path, masked: tuple[Path, ...]) -> bool:
-    """Whether it is a link to a folder with something masked in it: following those might never end."""
-    return path.is_symlink() and any(mask.is_relative_to(os.path.realpath(path)) for mask in masked)
+    found: list[Path] = []
+    for child in children:
+        # A link to a folder with something masked in it is not followed: that might never end.
+        if not (child.is_symlink() and any(one.is_relative_to(os.path.realpath(child)) for one in masked)):
+            found += _without(child, masked)
+    return found
 
 
 def view_for(imports: tuple[str, ...]) -> View:

@@ -25,7 +25,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from course.isolation import launch
 from course.isolation.failures import IsolationError
@@ -70,7 +70,7 @@ class ZygoteSpawner:
                 launch.copy_worker_files(self._folder)
                 self._process = self._run(self._command(theirs.fileno()), theirs.fileno())
             self._control.settimeout(START_TIMEOUT)
-            self._check_start(self._view)
+            self._check_start()
         except BaseException:
             self.close()
             raise
@@ -118,15 +118,16 @@ class ZygoteSpawner:
             except OSError as error:
                 raise IsolationError(f"the zygote could not be started: {error}") from None
 
-    def _check_start(self, view: View) -> None:
+    def _check_start(self) -> None:
         """An interpreter may silently load a library other than its own: compare what the zygote reports."""
         try:
             hello, _ = self._receive()
         except (OSError, ValueError) as error:
             raise IsolationError(f"the zygote did not start: {self._stderr() or error}") from None
         expected = list(sys.version_info[:3])
-        if Path(hello["prefix"]) != view.prefix or hello["version"] != expected:
-            raise IsolationError(f"the zygote runs another Python: {hello['prefix']}, expected {view.prefix}")
+        view, prefix = self._view, hello["prefix"]
+        if Path(prefix) != view.prefix or hello["version"] != expected:
+            raise IsolationError(f"the zygote runs another Python: {prefix}, expected {view.prefix}")
         roots = [Path(_PACKAGES), *view.packages]
         if not any(Path(hello["numpy"]).is_relative_to(root) for root in roots):
             raise IsolationError(f"the zygote found another numpy: {hello['numpy']}")
@@ -136,9 +137,8 @@ class ZygoteSpawner:
         return text.splitlines()[-1] if text else ""
 
     def _send(self, message: dict[str, Any], descriptors: tuple[int, ...] = ()) -> None:
-        rights = (
-            [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", descriptors))] if descriptors else []
-        )
+        held = array.array("i", descriptors)
+        rights = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, held)] if descriptors else []
         self._control.sendmsg([json.dumps(message).encode()], rights)
 
     def _receive(self) -> tuple[dict[str, Any], int | None]:
@@ -216,14 +216,7 @@ def _bubblewrap(view: View, folder: Path, root: bool) -> list[str]:
     binary = shutil.which("bwrap")
     if binary is None:
         raise IsolationError("bubblewrap is not installed")
-    command = [
-        binary,
-        "--unshare-pid",
-        "--unshare-net",
-        "--unshare-ipc",
-        "--unshare-uts",
-        "--unshare-cgroup-try",
-    ]
+    command = [binary, *(f"--unshare-{name}" for name in ("pid", "net", "ipc", "uts", "cgroup-try"))]
     command += ["--hostname", "course", "--die-with-parent", "--new-session"]
     if not root:
         # Not "--dev": it would nest a second user namespace, in which these capabilities are void.
@@ -257,11 +250,8 @@ def _folders_above(paths: tuple[Path, ...]) -> list[Path]:
 
 def _open_to_others(view: View) -> bool:
     """Whether an unprivileged user can reach the interpreter (it may lie below root's own home)."""
-    for path in (view.interpreter, *view.packages):
-        for folder in path.parents:
-            if not folder.stat().st_mode & 0o001:
-                return False
-    return True
+    folders = {folder for path in (view.interpreter, *view.packages) for folder in path.parents}
+    return all(folder.stat().st_mode & 0o001 for folder in folders)
 
 
 def _number_here(pidfd: int) -> int:
@@ -341,8 +331,33 @@ class ProcessSpawner:
             "workdir": str(workdir),
         }
         ours, theirs = socket.socketpair()
-        with theirs:
-            return _ProcessHandle(ours, theirs, self._view, str(self._folder), config, workdir, self._left)
+        # Opened twice and at once: later the student's code may have put anything under that name.
+        with theirs, (workdir / ".output").open("wb") as output:
+            printed = (workdir / ".output").open("rb")
+            streams: dict[str, Any] = {"stdout": output, "stderr": output, "env": launch.environment()}
+            if sys.platform == "win32":
+                process = self._start_windows(theirs, config, streams)
+            else:
+                process = subprocess.Popen(
+                    launch.command(self._view, str(self._folder), {**config, "control": theirs.fileno()}),
+                    pass_fds=(theirs.fileno(),),
+                    start_new_session=True,
+                    stdin=subprocess.DEVNULL,
+                    **streams,
+                )
+        return _ProcessHandle(ours, process, printed, workdir, self._left)
+
+    def _start_windows(
+        self, theirs: socket.socket, config: dict[str, Any], streams: dict[str, Any]
+    ) -> subprocess.Popen[bytes]:
+        # A socket cannot be inherited there; it is shared with the child by its process id, over stdin.
+        shared_size = len(theirs.share(os.getpid()))  # type: ignore[attr-defined]
+        command = launch.command(self._view, str(self._folder), {**config, "share": shared_size})
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, **streams)
+        assert process.stdin is not None
+        process.stdin.write(theirs.share(process.pid))  # type: ignore[attr-defined]
+        process.stdin.close()
+        return process
 
     def spawn(self) -> Handle:
         handle, self._standby = self._standby, None
@@ -373,47 +388,19 @@ class _ProcessHandle:
 
     def __init__(
         self,
-        ours: socket.socket,
-        theirs: socket.socket,
-        view: View,
-        folder: str,
-        config: dict[str, Any],
+        sock: socket.socket,
+        process: subprocess.Popen[bytes],
+        output: IO[bytes],
         workdir: Path,
         left: list[Iterator[None]],
     ) -> None:
-        self.channel = self._socket = ticking(ours)
-        self._left = left
+        self.channel = self._socket = ticking(sock)
+        self._process = process
+        self._output = output
         self._workdir = workdir
-        # Opened twice and at once: later the student's code may have put anything under that name.
-        with (workdir / ".output").open("wb") as output:
-            self._output = (workdir / ".output").open("rb")
-            streams: dict[str, Any] = {"stdout": output, "stderr": output, "env": launch.environment()}
-            if sys.platform == "win32":
-                self._process = self._start_windows(theirs, view, folder, config, streams)
-            else:
-                self._process = subprocess.Popen(
-                    launch.command(view, folder, {**config, "control": theirs.fileno()}),
-                    pass_fds=(theirs.fileno(),),
-                    start_new_session=True,
-                    stdin=subprocess.DEVNULL,
-                    **streams,
-                )
-
-        clock = ProcessClock(self._process.pid)
+        self._left = left
+        clock = ProcessClock(process.pid)
         self.cpu_s, self.asleep = clock.cpu_s, clock.asleep
-
-    @staticmethod
-    def _start_windows(
-        theirs: socket.socket, view: View, folder: str, config: dict[str, Any], streams: dict[str, Any]
-    ) -> subprocess.Popen[bytes]:
-        # A socket cannot be inherited there; it is shared with the child by its process id, over stdin.
-        shared_size = len(theirs.share(os.getpid()))  # type: ignore[attr-defined]
-        command = launch.command(view, folder, {**config, "share": shared_size})
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, **streams)
-        assert process.stdin is not None
-        process.stdin.write(theirs.share(process.pid))  # type: ignore[attr-defined]
-        process.stdin.close()
-        return process
 
     def alive(self) -> bool:
         return self._process.poll() is None

@@ -21,9 +21,16 @@ from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.figures.described import Curve, plot_of
 from course.handed_in.attempts import Attempt, attempt
-from course.handed_in.cells import CodeCell, code_cells, read_notebook, typed_cell
-from course.handed_in.limits import MAX_FILE, SOURCES
-from course.handed_in.notebook import SETUP, NotebookSource, notebook_source, source_of
+from course.handed_in.limits import MAX_FILE, SOURCES, read_notebook
+from course.handed_in.notebook import (
+    SETUP,
+    CodeCell,
+    NotebookSource,
+    code_cells,
+    notebook_source,
+    source_of,
+    typed_cell,
+)
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage, image_of
 from course.printable import counted, some

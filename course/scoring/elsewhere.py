@@ -33,16 +33,8 @@ _KNOWN = frozenset(
 
 #: What is imported most; a name near one of these is misspelt, more likely than a file.
 _USUAL = (
-    "collections",
-    "dataclasses",
-    "functools",
-    "itertools",
-    "math",
-    "numpy",
-    "random",
-    "statistics",
-    "typing",
-)
+    "collections", "dataclasses", "functools", "itertools", "math", "numpy", "random", "statistics", "typing",
+)  # fmt: skip
 
 _TYPES = "Nobody types while a check runs. Ask in a file of your own that imports this one."
 _FILES = (
@@ -86,12 +78,8 @@ _LACKS: tuple[tuple[str, str, str], ...] = (
 
 
 def lacking(failure: StudentFailure, code: str = "", *, shown: bool = True) -> str:
-    """A sentence on what is not there where a check runs; "" if the failure has another cause.
-
-    Args:
-        code: the line that failed.
-        shown: the failure's words may be repeated.
-    """
+    """A sentence on what is not there where a check runs; "" if the failure has another cause. ``shown``:
+    the failure's words may be repeated."""
     if failure.type == "ImportNotDeclaredError" or "relative import" in failure.message:
         return absent(failure, code, shown=shown)
     said = f"{failure.type}: {failure.message} {' '.join(failure.bases)}"
@@ -128,49 +116,35 @@ _ATTRIBUTE = re.compile(
 )
 #: Names that one NumPy has and another has not -> what all have.
 _INSTEAD = {
-    "trapz": "`np.trapezoid`",
-    "trapezoid": "`np.trapz`",
-    "in1d": "`np.isin`",
-    "product": "`np.prod`",
-    "cumproduct": "`np.cumprod`",
-    "cumulative_sum": "`np.cumsum`",
-    "cumulative_prod": "`np.cumprod`",
-    "sometrue": "`np.any`",
-    "alltrue": "`np.all`",
-    "float": "`float`",
-    "int": "`int`",
-    "bool": "`bool`",
-    "complex": "`complex`",
-    "object": "`object`",
-    "str": "`str`",
-    "Inf": "`np.inf`",
-    "Infinity": "`np.inf`",
-    "infty": "`np.inf`",
-    "PINF": "`np.inf`",
-    "NINF": "`-np.inf`",
-    "NaN": "`np.nan`",
-    "NAN": "`np.nan`",
-    "asfarray": "`np.asarray`",
-    "row_stack": "`np.vstack`",
-    "round_": "`np.round`",
-    "float_": "`np.float64`",
-    "matvec": "`@`",
-    "vecmat": "`@`",
-    "vecdot": "`np.einsum`",
+    "trapz": "np.trapezoid",
+    "trapezoid": "np.trapz",
+    "in1d": "np.isin",
+    "product": "np.prod",
+    "cumulative_sum": "np.cumsum",
+    "sometrue": "np.any",
+    "alltrue": "np.all",
+    "NINF": "-np.inf",
+    "asfarray": "np.asarray",
+    "row_stack": "np.vstack",
+    "round_": "np.round",
+    "float_": "np.float64",
+    "vecdot": "np.einsum",
+    **dict.fromkeys(("cumproduct", "cumulative_prod"), "np.cumprod"),
+    **dict.fromkeys(("Inf", "Infinity", "infty", "PINF"), "np.inf"),
+    **dict.fromkeys(("NaN", "NAN"), "np.nan"),
+    **dict.fromkeys(("matvec", "vecmat"), "@"),
+    **{name: name for name in ("float", "int", "bool", "complex", "object", "str")},
 }
 
 
 def instead(module: str, name: str) -> str:
     """What to write for a name that not every version has, as a sentence; "" where nothing is known."""
-    return f" Use {_INSTEAD[name]}." if module == "numpy" and name in _INSTEAD else ""
+    return f" Use `{_INSTEAD[name]}`." if module == "numpy" and name in _INSTEAD else ""
 
 
 def gone(failure: StudentFailure, *, shown: bool = True) -> str:
-    """A sentence on a name that this Python, or its NumPy, has not; "" if it is about none.
-
-    Args:
-        shown: the failure's words may be repeated; else only names of the table above are.
-    """
+    """A sentence on a name that this Python, or its NumPy, has not; "" if it is about none. Where the
+    failure's words are not to be ``shown``, only names of the table above are."""
     found = _ATTRIBUTE.search(failure.message)
     if found is None:
         return ""
@@ -199,11 +173,7 @@ _NEWER: tuple[tuple[str, str, tuple[int, int]], ...] = (
 
 
 def newer(failure: StudentFailure, code: str = "") -> str:
-    """That a newer Python reads the line, which this one cannot; "" where nothing speaks for it.
-
-    Args:
-        code: the line.
-    """
+    """That a newer Python reads the line, which this one cannot; "" where nothing speaks for it."""
     for said, look, version in _NEWER:
         if version > sys.version_info and re.search(said, failure.message) and re.search(look, code):
             since = ".".join(map(str, version))
@@ -211,23 +181,15 @@ def newer(failure: StudentFailure, code: str = "") -> str:
     return ""
 
 
-#: What Python says of a line that it cannot read -> what to do about it.
-_UNREAD = (
-    (
-        r"^invalid (?:non-printable )?character",
-        "It came with a text that was pasted: delete that character and type it yourself.",
-    ),
-    (
-        r"^invalid (?:decimal|imaginary|hexadecimal) literal",
-        "A letter follows a number. Is a `*` missing between them?",
-    ),
-)
-
-
 def unread(failure: StudentFailure, code: str = "") -> str:
     """What to do about a line that Python cannot read, as a sentence or two; "" where nothing fits."""
-    found = (advice for said, advice in _UNREAD if re.search(said, failure.message))
-    return newer(failure, code) or next(found, "")
+    if advice := newer(failure, code):
+        return advice
+    if re.search(r"^invalid (?:non-printable )?character", failure.message):
+        return "It came with a text that was pasted: delete that character and type it yourself."
+    if re.search(r"^invalid (?:decimal|imaginary|hexadecimal) literal", failure.message):
+        return "A letter follows a number. Is a `*` missing between them?"
+    return ""
 
 
 # ---

@@ -110,28 +110,25 @@ def place_of(error: BaseException) -> tuple[str, int] | None:
 def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:
     """A failure as words: what happened and what to do, without any value of the check's.
 
-    The exception's own message is in ``actual``, which hidden checks do not show.
-
-    Args:
-        shown: no input is hidden, so the message repeats the exception's own.
+    The exception's own message is in ``actual``, which hidden checks do not show; where no input is
+    hidden, the message repeats it.
     """
     if failure.kind == "error":
         return _error_finding(failure, shown=shown)
     if failure.kind == "missing" and failure.why is not None:
         return _left_out(failure, failure.why)
     if failure.kind == "missing":
-        return Finding(
-            message=f"Your file has no function `{failure.type}`.",
-            help="Keep the names the stub gave: define it at the top level of the file, spelled exactly so.",
-            diagnosis="MISSING_FUNCTION",
-        )
+        advice = "Keep the names the stub gave: define it at the top level of the file, spelled exactly so."
+        return Finding(f"Your file has no function `{failure.type}`.", advice, "MISSING_FUNCTION")
     if failure.kind == "protocol":
         return Finding(_NOT_PLAIN, _AS_ASKED, "NOT_PLAIN_DATA", actual=failure.message or None)
     code, _, advice = NO_VALUE[Status(failure.kind)]
     message = _ENDED[failure.kind]
     if failure.kind == "timeout" and failure.line:
-        message += f" It was still {_at(failure)}."
-    return Finding(message=message, help=advice, diagnosis=code, actual=failure.message or None)
+        places: Places = failure.places or Places()
+        loop = "in the loop that begins " if failure.type == LOOP else ""
+        message += f" It was still {loop}{places.phrase(failure.line)}."
+    return Finding(message, advice, code, actual=failure.message or None)
 
 
 def _left_out(failure: StudentFailure, why: StudentFailure) -> Finding:
@@ -145,33 +142,21 @@ def _left_out(failure: StudentFailure, why: StudentFailure) -> Finding:
     else:
         message = ended(f"`{failure.type}` could not be made: {why.type}{where}{said}")
         advice = lacking(why) or "Make that line work when the file is loaded, before any function is called."
-    return Finding(message=message, help=advice, diagnosis="MISSING_FUNCTION")
-
-
-def _at(failure: StudentFailure) -> str:
-    """The line of a failure within a sentence."""
-    places: Places = failure.places or Places()
-    assert failure.line is not None
-    return ("in the loop that begins " if failure.type == LOOP else "") + places.phrase(failure.line)
+    return Finding(message, advice, "MISSING_FUNCTION")
 
 
 def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     if failure.type == "NotImplementedError":
-        return Finding(
-            message="This function is not written yet: it still raises NotImplementedError.",
-            help="Replace each `raise` line with your code; the docstring above it says what to return.",
-            diagnosis="NOT_IMPLEMENTED",
-        )
+        message = "This function is not written yet: it still raises NotImplementedError."
+        advice = "Replace each `raise` line with your code; the docstring above it says what to return."
+        return Finding(message, advice, "NOT_IMPLEMENTED")
     places: Places = failure.places or Places()
     where = f" {places.phrase(failure.line)}" if failure.line else ""
     if failure.type == "ImportNotDeclaredError":
-        return Finding(
-            message=f"Your code needs a module{where} that this exercise does not allow.",
-            help=absent(failure, shown=shown)
-            or "Do without it. Plots and experiments belong in a file of your own that imports this one.",
-            diagnosis="IMPORT_NOT_ALLOWED",
-            actual=failure.message,
-        )
+        message = f"Your code needs a module{where} that this exercise does not allow."
+        advice = "Do without it. Plots and experiments belong in a file of your own that imports this one."
+        advice = absent(failure, shown=shown) or advice
+        return Finding(message, advice, "IMPORT_NOT_ALLOWED", actual=failure.message)
     # A student chooses class names, and one could spell out a hidden input, so only known names are shown.
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception"
@@ -181,12 +166,9 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     said = one_line(words, _SAID).rstrip(" .") if shown else ""
     begin = "Start at that line: print above it the values that it uses, or call" if where else "Call"
     advice = f"{begin} the function yourself and read the traceback from the bottom up."
-    return Finding(
-        message=f"Your code raised {name}{where}{': ' if said else ''}{said}.",
-        help=fitting or advice,
-        diagnosis="RAISED",
-        actual=f"{failure.type}: {failure.message}" if failure.message else failure.type,
-    )
+    message = f"Your code raised {name}{where}{': ' if said else ''}{said}."
+    actual = f"{failure.type}: {failure.message}" if failure.message else failure.type
+    return Finding(message, fitting or advice, "RAISED", actual=actual)
 
 
 def _apart(failure: StudentFailure, places: Places, *, shown: bool) -> str:
@@ -248,12 +230,8 @@ _AS_ASKED = (
 
 @dataclass(frozen=True)
 class Section:
-    """One part of a report.
-
-    Attributes:
-        text: paragraphs, separated by empty lines; lines that begin with "- " are items.
-        columns, rows: a table; every cell is text with its unit.
-    """
+    """One part of a report: paragraphs, separated by empty lines, in which lines that begin with "- " are
+    items; a table, in which every cell is text with its unit; a plot."""
 
     title: str
     text: str = ""
@@ -264,11 +242,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """Everything a report shows.
-
-    Attributes:
-        streams: recorded sensor streams by kind, for a ROS 2 bag.
-    """
+    """Everything a report shows; ``streams`` are recorded sensor streams by kind, for a ROS 2 bag."""
 
     title: str
     sections: tuple[Section, ...]
@@ -294,8 +268,7 @@ def finding_for(failure: StudentFailure | CheckFailed) -> Finding:
     finding = finding_of(failure, shown=True)
     functions = _FRAME.findall(failure.traceback)
     if failure.is_a("NotImplementedError") and functions:
-        message = f"`{functions[-1]}` is not written yet."
-        return Finding(message=message, help=finding.help, diagnosis=finding.diagnosis)
+        return Finding(f"`{functions[-1]}` is not written yet.", finding.help, finding.diagnosis)
     return finding
 
 

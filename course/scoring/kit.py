@@ -180,32 +180,27 @@ def fail(
     search_s = clock() - began
     help = help or _ADVICE  # noqa: A001
     bare = message, help
+    guess = found if isinstance(found, Diagnosis) else None
     code: str | None = found if isinstance(found, str) else None
-    if isinstance(found, Diagnosis):
-        code = found.code
-        message = said_once(message, found.looks_like)
-        help = found.advice or help  # noqa: A001
-        first_divergence = first_divergence or found.divergence
-    raise CheckFailed(
-        Finding(
-            message=message,
-            help=help,
-            diagnosis=code,
-            input=None if input is None else plain(input),
-            expected=None if expected is _NOT_SAID else plain(expected),
-            actual=plain(actual),
-            quantity="" if f"`{quantity}`" in message else quantity,
-            units=units,
-            tolerance=_of_plain(tolerance),
-            first_divergence=_of_plain(first_divergence),
-        ),
-        broke,
-        bare,
-        found if isinstance(found, Diagnosis) else None,
-        comparison,
-        looked=callable(diagnose),
-        search_s=search_s,
+    if guess is not None:
+        code = guess.code
+        message = said_once(message, guess.looks_like)
+        help = guess.advice or help  # noqa: A001
+        first_divergence = first_divergence or guess.divergence
+    finding = Finding(
+        message,
+        help,
+        code,
+        input=None if input is None else plain(input),
+        expected=None if expected is _NOT_SAID else plain(expected),
+        actual=plain(actual),
+        quantity="" if f"`{quantity}`" in message else quantity,
+        units=units,
+        tolerance=_of_plain(tolerance),
+        first_divergence=_of_plain(first_divergence),
     )
+    looked = callable(diagnose)
+    raise CheckFailed(finding, broke, bare, guess, comparison, looked=looked, search_s=search_s)
 
 
 def _of_plain(part: _Part) -> _Part:
@@ -408,19 +403,14 @@ def expect_array(
     if t is not None:
         column: Any = (slice(None), *first[1:])
         finding["comparison"] = np.asarray(t, dtype=float), array[column], wanted[column], label, units
-        finding.setdefault(
-            "first_divergence", Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
-        )
+        left = Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
+        finding.setdefault("first_divergence", left)
     finding["diagnose"] = _or_not_finite(float(array[first]), finding.get("diagnose"))
-    short = wanted.size <= 6
-    fail(
-        message,
-        expected=wanted if short else {quantity + "".join(f"[{i}]" for i in first): wanted[first]},
-        actual=array if short else {quantity + "".join(f"[{i}]" for i in first): array[first]},
-        units=units,
-        tolerance=Tolerance(rel=rel or None, abs=abs or None, source=source),
-        **finding,
-    )
+    finding |= {"units": units, "tolerance": Tolerance(rel=rel or None, abs=abs or None, source=source)}
+    if wanted.size <= 6:
+        fail(message, expected=wanted, actual=array, **finding)
+    at = quantity + "".join(f"[{i}]" for i in first)
+    fail(message, expected={at: wanted[first]}, actual={at: array[first]}, **finding)
 
 
 def expect_order(
@@ -446,15 +436,9 @@ def expect_order(
     measured = convergence_order(hs, values) if np.all((values > 0) & np.isfinite(values)) else math.nan
     if not math.fabs(measured - order) <= abs:
         shown = {f"error at h = {h:.3g} s": float(e) for h, e in zip(hs, values, strict=True)}
-        fail(
-            message,
-            expected=order,
-            actual=measured,
-            units="1",
-            tolerance=Tolerance(abs=abs, source=source),
-            input={**(finding.pop("input", None) or {}), **shown},
-            **finding,
-        )
+        finding["input"] = {**(finding.get("input") or {}), **shown}
+        limits = Tolerance(abs=abs, source=source)
+        fail(message, expected=order, actual=measured, units="1", tolerance=limits, **finding)
 
 
 def expect_conserved(
@@ -467,14 +451,9 @@ def expect_conserved(
         off = ~(change <= rel * np.abs(array[0]))
     if off.any():
         worst = float(np.max(np.where(np.isfinite(change), change, math.inf)))
-        fail(
-            message,
-            expected=0.0,
-            actual=worst / float(np.abs(array[0])) if array[0] else math.inf,
-            units=units,
-            tolerance=Tolerance(rel=rel, source=source),
-            **finding,
-        )
+        share = worst / float(np.abs(array[0])) if array[0] else math.inf
+        limits = Tolerance(rel=rel, source=source)
+        fail(message, expected=0.0, actual=share, units=units, tolerance=limits, **finding)
 
 
 def expect_bounded(
@@ -505,14 +484,9 @@ def expect_evaluations(count: int, allowed: Collection[int], *, message: str, **
     """The grader's own count of evaluations is one of the allowed numbers."""
     if count not in allowed:
         finding.setdefault("help", "Count the places where your code calls it, and how often a loop does.")
-        fail(
-            message,
-            expected=list(allowed) if len(allowed) > 1 else next(iter(allowed)),
-            actual=count,
-            quantity=EVALUATIONS,
-            tolerance=Tolerance(abs=0.0, source="counted by the grader"),
-            **finding,
-        )
+        finding |= {"quantity": EVALUATIONS, "tolerance": Tolerance(abs=0.0, source="counted by the grader")}
+        expected = list(allowed) if len(allowed) > 1 else next(iter(allowed))
+        fail(message, expected=expected, actual=count, **finding)
 
 
 def expect_raises(fn: Callable[[], Any], exception: str, *, message: str, **finding: Any) -> None:
@@ -556,13 +530,8 @@ def expect_untouched(
     """
     for name, given, after in zip(names, before, inspected.args_after, strict=True):
         if name and not np.array_equal(given, after):
-            fail(
-                f"The call changed its argument `{name}` in place.",
-                expected={name: given},
-                actual={name: after},
-                diagnose=mutated,
-                **finding,
-            )
+            message = f"The call changed its argument `{name}` in place."
+            fail(message, expected={name: given}, actual={name: after}, diagnose=mutated, **finding)
     if inspected.shared:
         fail("What the call returned is the caller's own array, not a new one.", diagnose=shared, **finding)
 
@@ -635,13 +604,10 @@ def acceleration(fn: Callable[[float, Array, Array], ArrayLike], d: int) -> Coun
             t, q, v = (*args, *(kwargs[name] for name in ("t", "q", "v")[len(args) :]))
             t, q, v = as_number(t, "t"), as_vector(q, d, "q"), as_vector(v, d, "v")
         except (CheckFailed, KeyError, ValueError):
-            fail(
-                "Your code calls accel with something other than a time, a position and a velocity.",
-                help="Call it as accel(t, q, v): a number, then two arrays of the shape your step was given.",
-                diagnose="ACCEL_MISUSED",
-                expected=f"accel(t, q, v) with q and v of shape ({d},)",
-                actual=list(args),
-            )
+            message = "Your code calls accel with something other than a time, a position and a velocity."
+            advice = "Call it as accel(t, q, v): a number, then two arrays of the shape your step was given."
+            wanted = f"accel(t, q, v) with q and v of shape ({d},)"
+            fail(message, help=advice, diagnose="ACCEL_MISUSED", expected=wanted, actual=list(args))
         with np.errstate(all="ignore"):
             return np.asarray(fn(t, q, v), dtype=float)
 

@@ -57,12 +57,8 @@ class RemoteSubmission:
     Whatever calls the student's code raises StudentFailure where it gave no value.
 
     Args:
-        spawner: starts workers.
-        files: file name to content.
-        main: the file whose functions are checked.
         timeout: seconds of CPU time per check.
         times: how many times the usual time all its checks together have.
-        seed: seed of the grading run.
         places: how its lines are told; failures carry it.
         home: a worker that does not answer is asked where it is.
         patience: seconds of CPU time for loading, if that is to have less than a check.
@@ -139,7 +135,6 @@ class RemoteSubmission:
         """The result of the student's function, as plain data.
 
         Args:
-            name: the function.
             args, kwargs: plain data, arrays, right-hand sides of ``course.physics.systems`` (evaluated
                 beside the student's code), functions and ``kit.black_box`` objects (evaluated here, at a cost
                 of some 50 microseconds a call), ``ref(name)``, or generators (which cross as a seed).

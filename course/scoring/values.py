@@ -31,13 +31,8 @@ _HUGE = 1e150
 
 @dataclass(frozen=True, slots=True)
 class Inspected:
-    """The result of a call and its effect on the arguments.
-
-    Attributes:
-        value: the returned value.
-        args_after: the arguments as they were after the call.
-        shared: True if a returned array shares memory with an argument.
-    """
+    """The result of a call, its arguments as they were after it, and whether a returned array shares their
+    memory."""
 
     value: Any
     args_after: list[Any]
@@ -90,14 +85,12 @@ def as_list(value: Any, name: str = "the result", length: int | None = None) -> 
     elif not isinstance(value, list | tuple):
         _refuse(value, name, "a list", "a list" if length is None else f"a list of {length}")
     if len(value) > MAX_VALUES or (length is not None and len(value) != length):
-        raise CheckFailed(
-            Finding(
-                message=f"{_capital(name)} has the wrong length.",
-                help="Print its `len` and compare it with what the README asks for.",
-                diagnosis="WRONG_TYPE",
-                expected="a shorter list" if length is None else f"a list of {length}",
-                actual=plain(value),
-            )
+        _fail(
+            f"{_capital(name)} has the wrong length.",
+            "Print its `len` and compare it with what the README asks for.",
+            "WRONG_TYPE",
+            "a shorter list" if length is None else f"a list of {length}",
+            plain(value),
         )
     return list(value)
 
@@ -115,17 +108,15 @@ def as_array(value: Any, shape: Sequence[int | None], name: str = "the result") 
 
 
 def _refuse_shape(array: Array, name: str, wanted: str) -> NoReturn:
-    raise CheckFailed(
-        Finding(
-            message=f"{_capital(name)} {'has the wrong shape' if array.ndim else 'is a single number'}.",
-            help="Print its `numpy.shape` and compare it with what was expected."
-            if array.ndim
-            else "Make it a list or an array: [x, v], or [x] where there is only one number.",
-            diagnosis="WRONG_SHAPE",
-            expected=f"shape {wanted}",
-            actual=f"shape {array.shape}",
-        )
-    )
+    message = f"{_capital(name)} {'has the wrong shape' if array.ndim else 'is a single number'}."
+    advice = "Make it a list or an array: [x, v], or [x] where there is only one number."
+    if array.ndim:
+        advice = "Print its `numpy.shape` and compare it with what was expected."
+    _fail(message, advice, "WRONG_SHAPE", f"shape {wanted}", f"shape {array.shape}")
+
+
+def _fail(message: str, advice: str, diagnosis: str, expected: Any, actual: Any) -> NoReturn:
+    raise CheckFailed(Finding(message, advice, diagnosis, expected=expected, actual=actual))
 
 
 def as_vector(value: Any, d: int | None = None, name: str = "the result") -> Array:
@@ -147,15 +138,9 @@ def as_tuple(value: Any, names: Sequence[str]) -> list[Any]:
         _refuse(value, "the result", wanted)
     if len(value) != len(names):
         few = "too few" if len(value) < len(names) else "too many"
-        raise CheckFailed(
-            Finding(
-                message=f"The result has {few} parts: it should be {wanted}.",
-                help="Return exactly these, in this order, separated by commas.",
-                diagnosis="WRONG_TYPE",
-                expected=wanted,
-                actual=plain(value),
-            )
-        )
+        message = f"The result has {few} parts: it should be {wanted}."
+        advice = "Return exactly these, in this order, separated by commas."
+        _fail(message, advice, "WRONG_TYPE", wanted, plain(value))
     return list(value)
 
 
@@ -173,15 +158,9 @@ def as_record(value: Any, keys: Sequence[str], name: str = "the result") -> dict
     extra = [str(key)[:80] for key in value if key not in keys]
     if missing or extra:
         parts = [f"lacks {', '.join(missing)}"] * bool(missing) + ["has unexpected keys"] * bool(extra)
-        raise CheckFailed(
-            Finding(
-                message=f"{_capital(name)} {' and '.join(parts)}.",
-                help=f"Return a dict with exactly these keys: {', '.join(keys)}.",
-                diagnosis="WRONG_KEYS",
-                expected=list(keys),
-                actual=[str(key)[:80] for key in list(value)[:40]],
-            )
-        )
+        message = f"{_capital(name)} {' and '.join(parts)}."
+        advice = f"Return a dict with exactly these keys: {', '.join(keys)}."
+        _fail(message, advice, "WRONG_KEYS", list(keys), [str(key)[:80] for key in list(value)[:40]])
     return value
 
 
@@ -193,30 +172,23 @@ def as_march(result: Any, n: int, d: int) -> tuple[Array, Array]:
     """
     if isinstance(result, dict) and "bad" in result:
         bad = str(result["bad"])[:200]
-        nothing = bad.startswith("NoneType")
-        raise CheckFailed(
-            Finding(
-                message="Your step returned None." if nothing else _NOT_A_PAIR,
-                help=_NO_RETURN if nothing else "Return two arrays as long as q: `return q_next, v_next`.",
-                diagnosis="RETURNS_NOTHING" if nothing else "NOT_A_PAIR",
-                expected=f"(q_next, v_next), each of shape ({d},)",
-                actual=bad,
-            )
-        )
+        expected = f"(q_next, v_next), each of shape ({d},)"
+        if bad.startswith("NoneType"):
+            _fail("Your step returned None.", _NO_RETURN, "RETURNS_NOTHING", expected, bad)
+        advice = "Return two arrays as long as q: `return q_next, v_next`."
+        _fail(_NOT_A_PAIR, advice, "NOT_A_PAIR", expected, bad)
     q, v = as_tuple(result, ("q", "v"))
     return as_array(q, (n + 1, d), "q"), as_array(v, (n + 1, d), "v")
 
 
 def overwritten(name: str) -> CheckFailed:
     """The finding on a function whose later calls change what an earlier one returned."""
-    return CheckFailed(
-        Finding(
-            message=f"A later call of `{name}` changed what an earlier call had returned.",
-            help="Make new arrays, lists and dicts in every call. One that is kept outside the function, or "
-            "in a default argument, and filled again, is still in the hands of whoever called before.",
-            diagnosis="RESULT_OVERWRITTEN",
-        )
+    advice = (
+        "Make new arrays, lists and dicts in every call. One that is kept outside the function, or in a "
+        "default argument, and filled again, is still in the hands of whoever called before."
     )
+    message = f"A later call of `{name}` changed what an earlier call had returned."
+    return CheckFailed(Finding(message, advice, "RESULT_OVERWRITTEN"))
 
 
 def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per kind of value
@@ -305,16 +277,10 @@ def _spelled(shape: Sequence[int | None]) -> str:
 
 def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
     """Fail because ``value`` is not ``wanted``; a wanted size appears only in ``expected``."""
-    nothing = value is None
-    raise CheckFailed(
-        Finding(
-            message=f"{_capital(name)} is {_kind(value)}, not {wanted}.",
-            help=_NO_RETURN if nothing else _advice(value, wanted),
-            diagnosis="RETURNS_NOTHING" if nothing else "WRONG_TYPE",
-            expected=expected or wanted,
-            actual=plain(value),
-        )
-    )
+    message = f"{_capital(name)} is {_kind(value)}, not {wanted}."
+    advice = _NO_RETURN if value is None else _advice(value, wanted)
+    diagnosis = "RETURNS_NOTHING" if value is None else "WRONG_TYPE"
+    _fail(message, advice, diagnosis, expected or wanted, plain(value))
 
 
 def _advice(value: Any, wanted: str) -> str:

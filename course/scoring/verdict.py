@@ -13,9 +13,6 @@ from typing import Any
 
 import msgspec
 
-# ---
-# Where a trajectory left the right one; a separate module, so that reading a verdict does not load numpy.
-
 
 class Divergence(msgspec.Struct, frozen=True):
     """The first place where a trajectory left the reference. ``t`` in s."""
@@ -118,11 +115,8 @@ class Problem(msgspec.Struct, frozen=True):
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     """Everything one grading of one submission found.
 
-    Attributes:
-        state: "graded", "ungradable" or "grader_error".
-        isolation: protection level the student's code ran at: "L3", "L2" or "L1".
-        error: why it is ungradable, or what broke in the grader; None when graded.
-        warnings: remarks that cost no points.
+    It is "graded", "ungradable" or "grader_error", and ``error`` says why; the code ran at protection
+    level "L3", "L2" or "L1"; warnings are remarks that cost no points.
     """
 
     exercise: str
@@ -142,11 +136,7 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def not_graded(exercise: str, most: float, state: str, error: Problem) -> Verdict:
-    """The verdict on work that no check judged.
-
-    Args:
-        most: points of the exercise.
-    """
+    """The verdict on work that no check judged, of an exercise with so many points."""
     return Verdict(
         exercise=exercise, scope="full", state=state, score=0.0, max_score=most, passed=False, checks=(),
         isolation="", error=error,
@@ -164,19 +154,9 @@ def for_student(result: CheckResult) -> CheckResult:
     """
     if result.visibility is Visibility.PUBLIC:
         return result
-    return msgspec.structs.replace(
-        _unspoken(result),
-        input=None,
-        expected=None,
-        actual=None,
-        quantity="",
-        units="",
-        tolerance=None,
-        first_divergence=None,
-        traceback=None,
-        stdout=None,
-        duration_ms=0.0,
-    )
+    none = ("input", "expected", "actual", "tolerance", "first_divergence", "traceback", "stdout")
+    dropped = {"quantity": "", "units": "", "duration_ms": 0.0, **dict.fromkeys(none)}
+    return msgspec.structs.replace(_unspoken(result), **dropped)
 
 
 #: What a student reads about a hidden check without a value, by its status: (diagnosis, message, advice).
@@ -213,20 +193,17 @@ def _unspoken(result: CheckResult) -> CheckResult:
     """A hidden result in fixed words; the student's code could only choose which of five."""
     if result.diagnosis == "MISSING_FUNCTION":
         return result  # known before the code received any input
+    status = result.status
     if result.diagnosis in _OTHER_FORM:
-        return msgspec.structs.replace(
-            result,
-            status=Status.FAIL,
-            diagnosis="OTHER_FORM",
-            message=f"What `{result.task}` returns has not the form that was asked for.",
-            help="Compare it with the README, for everything that it may be called with.",
-        )
-    if result.status not in NO_VALUE:
+        status, diagnosis = Status.FAIL, "OTHER_FORM"
+        message = "What `{}` returns has not the form that was asked for."
+        advice = "Compare it with the README, for everything that it may be called with."
+    elif status in NO_VALUE:
+        diagnosis, message, advice = NO_VALUE[status]
+    else:
         return result
-    diagnosis, message, advice = NO_VALUE[result.status]
-    return msgspec.structs.replace(
-        result, diagnosis=diagnosis, message=message.format(result.task), help=advice
-    )
+    told = {"diagnosis": diagnosis, "message": message.format(result.task), "help": advice}
+    return msgspec.structs.replace(result, status=status, **told)
 
 
 #: Largest verdict as JSON, in bytes: how much one submission may add to a gradebook, a page or a line.

@@ -29,13 +29,8 @@ _MOST = 5
 
 
 class Graders(msgspec.Struct, frozen=True):
-    """What grades.
-
-    Attributes:
-        python, numpy: their versions; "" if unknown.
-        names: what is in some of their modules.
-        modules: of that Python's own.
-    """
+    """What grades: its versions ("" if unknown), the names in some of their modules, and that Python's own
+    modules."""
 
     python: str
     numpy: str = ""

@@ -18,7 +18,7 @@ from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Change, Diff, Reset, Start, Update
 from course.errors import NotFoundError, UsageError
-from course.handed_in.cells import read_notebook
+from course.handed_in.limits import read_notebook
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.printable import counted
 from course.progress.workspace import same_text, write_atomically

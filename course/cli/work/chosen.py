@@ -19,8 +19,7 @@ from course.catalog.models import Exercise
 from course.cli.frame.here import Here, named
 from course.cli.frame.replies import FileReply
 from course.errors import CourseError, NotFoundError, UngradableError
-from course.handed_in.cells import read_notebook
-from course.handed_in.limits import MAX_FILE
+from course.handed_in.limits import MAX_FILE, read_notebook
 from course.notebooks.cells import dumped
 from course.notebooks.merge import is_untouched
 from course.printable import command

@@ -73,10 +73,8 @@ def check_scheduler(address: str) -> None:
     if place.scheme == "tls":
         _check_tls(url, host, port, _context(settings), settings)
     elif settings.get("require_encryption"):
-        raise _problem(
-            f"{url} is not encrypted, and Dask's settings require encryption.",
-            f"Name it as tls://{host}:{port}, or unset DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION.",
-        )
+        fix = f"Name it as tls://{host}:{port}, or unset DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION."
+        raise _problem(f"{url} is not encrypted, and Dask's settings require encryption.", fix)
     else:
         _check_plain(url, host, port)
 
@@ -93,9 +91,8 @@ def _address(named: str) -> str:
         found = None
     address = found.get("address") if isinstance(found, dict) else None
     if not isinstance(address, str):
-        raise UsageError(
-            f"{named} is not a scheduler file.", help="`dask scheduler --scheduler-file` writes one."
-        )
+        message = f"{named} is not a scheduler file."
+        raise UsageError(message, help="`dask scheduler --scheduler-file` writes one.")
     return address
 
 
@@ -115,11 +112,9 @@ def _context(settings: dict[str, Any]) -> ssl.SSLContext:
     if missing == ["key"] and "PRIVATE KEY" in _text(str(settings["cert"])):
         missing = []  # one file may hold both
     if missing:
-        wanted = " and ".join(_SETTINGS[name][1] for name in missing)
-        variables = ", ".join(_SETTINGS[name][0] for name in missing)
-        raise _problem(
-            f"A tls:// scheduler needs {wanted}, and Dask's settings name none.", f"Set {variables}."
-        )
+        variables, wanted = zip(*(_SETTINGS[name] for name in missing), strict=True)
+        message = f"A tls:// scheduler needs {' and '.join(wanted)}, and Dask's settings name none."
+        raise _problem(message, f"Set {', '.join(variables)}.")
     for name, (variable, what) in _SETTINGS.items():
         path = str(settings[name] or settings["cert"])
         if "\n" in path:  # Dask takes the text of a certificate in place of a file
@@ -127,10 +122,8 @@ def _context(settings: dict[str, Any]) -> ssl.SSLContext:
         try:
             Path(path).read_bytes()
         except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise _problem(
-                f"{what.capitalize()} cannot be read: {path}: {reason}.", f"Set {variable}."
-            ) from None
+            message = f"{what.capitalize()} cannot be read: {path}: {(error.strerror or str(error)).lower()}."
+            raise _problem(message, f"Set {variable}.") from None
     from distributed import Security
 
     try:
@@ -138,10 +131,8 @@ def _context(settings: dict[str, Any]) -> ssl.SSLContext:
     except (ssl.SSLError, OSError, ValueError, TypeError) as error:
         reason = getattr(error, "reason", None) or str(error)
         wrong = "the key does not belong to the certificate" if "MISMATCH" in str(reason) else str(reason)
-        raise _problem(
-            f"The certificates in Dask's settings cannot be used: {wrong}.",
-            f"Look at {', '.join(variable for variable, _ in _SETTINGS.values())}.",
-        ) from None
+        fix = f"Look at {', '.join(variable for variable, _ in _SETTINGS.values())}."
+        raise _problem(f"The certificates in Dask's settings cannot be used: {wrong}.", fix) from None
     assert isinstance(context, ssl.SSLContext)
     return context
 
@@ -183,13 +174,10 @@ def _check_tls(url: str, host: str, port: int, context: ssl.SSLContext, settings
 def _told(url: str, host: str, port: int, error: Exception) -> CourseError:
     """Why there was no handshake."""
     if isinstance(error, ssl.SSLError) and "ALERT" in str(error.reason):
-        return _problem(
-            f"The scheduler at {url} does not take the certificate of this side.",
-            "Set DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT and ..._KEY to one its authority signed.",
-        )
-    return _problem(
-        f"What answers at {host}:{port} does not speak TLS.", f"Is the scheduler tcp://{host}:{port}?"
-    )
+        fix = "Set DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT and ..._KEY to one its authority signed."
+        return _problem(f"The scheduler at {url} does not take the certificate of this side.", fix)
+    fix = f"Is the scheduler tcp://{host}:{port}?"
+    return _problem(f"What answers at {host}:{port} does not speak TLS.", fix)
 
 
 def _check_plain(url: str, host: str, port: int) -> None:
@@ -204,10 +192,8 @@ def _check_plain(url: str, host: str, port: int) -> None:
     with _connected(url, host, port) as plain, contextlib.suppress(OSError):
         plain.settimeout(_HANDSHAKE_S)
         asking.wrap_socket(plain, server_hostname=host).close()
-        raise _problem(
-            f"The scheduler at {url} speaks TLS.",
-            f"Name it as tls://{host}:{port}, with the certificates that docs/cluster.md describes.",
-        )
+        fix = f"Name it as tls://{host}:{port}, with the certificates that docs/cluster.md describes."
+        raise _problem(f"The scheduler at {url} speaks TLS.", fix)
 
 
 def _connected(url: str, host: str, port: int) -> socket.socket:
@@ -219,11 +205,8 @@ def _connected(url: str, host: str, port: int) -> socket.socket:
 
 def _silent(where: str, error: OSError) -> CourseError:
     reason = (error.strerror or str(error) or type(error).__name__).lower()
-    return _problem(
-        f"No Dask scheduler answers at {where}: {reason}.",
-        "Is it running, and can this machine reach it?",
-        "no_scheduler",
-    )
+    fix = "Is it running, and can this machine reach it?"
+    return _problem(f"No Dask scheduler answers at {where}: {reason}.", fix, "no_scheduler")
 
 
 def _problem(message: str, fix: str, code: str = "no_tls") -> MissingCapabilityError:
@@ -236,11 +219,8 @@ _ANSWER_S = 20.0
 
 @contextlib.contextmanager
 def local_cluster(workers: int) -> Iterator[GradeAll]:
-    """What grades on a cluster of ``workers`` processes on this machine, for one run.
-
-    Raises:
-        MissingCapabilityError: Dask is not installed.
-    """
+    """What grades on a cluster of ``workers`` processes on this machine, for one run; needs the extra
+    "cluster"."""
     require("cluster")
     with contextlib.ExitStack() as stack:
         yield lambda entries, terms: _graded(start_cluster(stack, workers), entries, terms)
@@ -248,12 +228,10 @@ def local_cluster(workers: int) -> Iterator[GradeAll]:
 
 @contextlib.contextmanager
 def remote_cluster(address: str) -> Iterator[GradeAll]:
-    """What grades on the cluster whose scheduler is at ``address``, or is in the scheduler file of that name.
+    """What grades on the cluster whose scheduler is at ``address``, or is in the scheduler file of that
+    name; it needs the extra "cluster", too.
 
     Others may use it too, so unprotected submissions, which could command it, raise a UsageError there.
-
-    Raises:
-        MissingCapabilityError: Dask is not installed.
     """
     require("cluster")
     with contextlib.ExitStack() as stack:
@@ -330,31 +308,24 @@ def _reach(stack: contextlib.ExitStack, address: str) -> Any:
     try:
         client = Client(**where, timeout=_ANSWER_S, set_as_default=False)
     except (OSError, TimeoutError) as error:
-        raise MissingCapabilityError(
-            f"No Dask scheduler answers at {address}: {error}.",
-            help="Is it running, can this machine reach it, and has this command the same TLS settings?",
-            code="no_scheduler",
-        ) from None
+        message = f"No Dask scheduler answers at {address}: {error}."
+        advice = "Is it running, can this machine reach it, and has this command the same TLS settings?"
+        raise MissingCapabilityError(message, help=advice, code="no_scheduler") from None
     except (ValueError, TypeError) as error:
-        raise UsageError(
-            f"--scheduler {address} is not an address: {error}.", help="It looks like tls://name:8786."
-        ) from None
+        message = f"--scheduler {address} is not an address: {error}."
+        raise UsageError(message, help="It looks like tls://name:8786.") from None
     stack.enter_context(client)
     try:
         client.wait_for_workers(1, timeout=_ANSWER_S)
     except TimeoutError:
-        raise MissingCapabilityError(
-            f"The scheduler at {address} has no workers.", help="Start some first.", code="no_workers"
-        ) from None
+        message = f"The scheduler at {address} has no workers."
+        raise MissingCapabilityError(message, help="Start some first.", code="no_workers") from None
     return client
 
 
 class DaskWorkers:
-    """The workers of a Dask cluster, as the coordinator sees them.
-
-    Args:
-        task: the function to run there, bytes to bytes; known there by the same name.
-    """
+    """The workers of a Dask cluster, as the coordinator sees them; ``task``, bytes to bytes, is known there
+    by the same name."""
 
     def __init__(self, client: Any, task: Callable[[bytes], bytes] = grade_batch) -> None:
         self._client = client
@@ -399,25 +370,17 @@ def _outcome(future: Any, *, connected: bool) -> Outcome:
         return _scheduler_gone()
     if isinstance(error, KilledWorker):
         return LostBatch(int(getattr(error, "allowed_failures", 0)) + 1)
-    cause = next((e for e in _chain(error) if isinstance(e, ImportError | AttributeError)), None)
+    cause = error
+    while cause is not None and not isinstance(cause, ImportError | AttributeError):
+        cause = cause.__cause__ or cause.__context__
     if cause is not None:
-        return MissingCapabilityError(
-            f"The cluster's scheduler or a worker has no such course: {cause}.",
-            help="Install the same checkout of the course where the scheduler and the workers run.",
-            code="version_mismatch",
-        )
+        message = f"The cluster's scheduler or a worker has no such course: {cause}."
+        advice = "Install the same checkout of the course where the scheduler and the workers run."
+        return MissingCapabilityError(message, help=advice, code="version_mismatch")
     return InternalError(f"A worker of the cluster failed: {type(error).__name__}: {error}.")
 
 
 def _scheduler_gone() -> MissingCapabilityError:
-    return MissingCapabilityError(
-        "The cluster's scheduler is gone; all results so far are kept.",
-        help="Start it again, then run the same command with --resume.",
-        code="no_scheduler",
-    )
-
-
-def _chain(error: BaseException | None) -> Iterator[BaseException]:
-    while error is not None:
-        yield error
-        error = error.__cause__ or error.__context__
+    message = "The cluster's scheduler is gone; all results so far are kept."
+    advice = "Start it again, then run the same command with --resume."
+    return MissingCapabilityError(message, help=advice, code="no_scheduler")

@@ -16,14 +16,8 @@ from typing import Protocol, TypeAlias
 from course.errors import CourseError, InternalError, MissingCapabilityError
 from course.grading.cluster.worker import FORMAT, Answers, Batch, decode, encode
 from course.grading.intake.students import Entry
-from course.grading.running.batch import (
-    KILLED_ITS_GRADER,
-    MAX_TRIES,
-    Graded,
-    as_error,
-    job_of,
-    without_grading,
-)
+from course.grading.running import batch as local
+from course.grading.running.batch import MAX_TRIES, Graded, without_grading
 from course.grading.running.grader import Job
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
@@ -43,11 +37,7 @@ _PATIENCE_S = 600.0
 
 @dataclass(frozen=True)
 class LostBatch:
-    """A batch that did not come back, because its worker died.
-
-    Attributes:
-        deaths: how many workers in a row died with this batch.
-    """
+    """A batch that did not come back: so many workers in a row died with it."""
 
     deaths: int = 1
 
@@ -75,13 +65,9 @@ def grade_on(
 ) -> Iterator[Graded]:
     """Verdicts on all entries that have a submission or a problem, in the order they arrive.
 
-    Args:
-        version: the version of an exercise's graders, by its id, which the workers' graders must have too.
-        graders: the snapshot that ``terms`` names, packed; it is sent to a worker that lacks it.
-        patience_s: wall seconds to wait for a worker when there is none.
-
-    Raises:
-        CourseError: the workers cannot grade (version, protection level, content), or there are none left.
+    The workers' graders must have the version that ``version`` gives for an exercise; the snapshot,
+    packed, is sent to one that lacks it. CourseError: they cannot grade (version, protection level,
+    content), or there have been none for ``patience_s`` wall seconds.
     """
     yield from _Coordinator(workers, iter(entries), terms, version, graders, patience_s).run()
 
@@ -169,7 +155,7 @@ class _Coordinator:
             if entry is None:
                 return
             if entry.submission is not None:
-                self._waiting.append(_Work(entry, job_of(entry, self._version(entry.exercise.id))))
+                self._waiting.append(_Work(entry, local.job_of(entry, self._version(entry.exercise.id))))
             elif entry.problem is not None:
                 self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
 
@@ -182,11 +168,9 @@ class _Coordinator:
             self._seen_at = now
         self._places = max(1, places)  # what waits on the cluster is begun by the next worker that comes
         if now - self._seen_at > self._patience_s:
-            raise MissingCapabilityError(
-                "The cluster has no workers left; all results so far are kept.",
-                help="Start workers, then run the same command with --resume.",
-                code="no_workers",
-            )
+            message = "The cluster has no workers left; all results so far are kept."
+            advice = "Start workers, then run the same command with --resume."
+            raise MissingCapabilityError(message, help=advice, code="no_workers")
 
     # -- back -----------------------------------------------------------------------------------------
 
@@ -205,11 +189,9 @@ class _Coordinator:
 
     def _answered(self, batch: list[_Work], reply: Answers | None) -> None:
         if reply is None:
-            raise MissingCapabilityError(
-                "A worker of the cluster answers in another version of the protocol.",
-                help="Install the same checkout of the course on every machine, and restart the workers.",
-                code="version_mismatch",
-            )
+            message = "A worker of the cluster answers in another version of the protocol."
+            advice = "Install the same checkout of the course on every machine, and restart the workers."
+            raise MissingCapabilityError(message, help=advice, code="version_mismatch")
         if reply.wanting and self._graders:
             self._wanting.append(batch)
             return
@@ -219,12 +201,12 @@ class _Coordinator:
             if answer.error is not None:
                 problem = answer.error
                 said = Problem(problem.code, f"Worker on {reply.host}: {problem.message}", problem.help)
-                self._failure = as_error(said, answer.exit_code)
+                self._failure = local.as_error(said, answer.exit_code)
                 return
             if not answer.is_about(work.job):
                 self._lost([work], LostBatch())
             elif answer.verdict is None:
-                self._blame(work, KILLED_ITS_GRADER)
+                self._blame(work, local.KILLED_ITS_GRADER)
             else:
                 self._done.append(Graded(work.entry, answer.verdict, answer.version))
         if len(reply.answers) < len(batch):

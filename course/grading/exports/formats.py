@@ -18,7 +18,7 @@ from course.grading.exports.selection import (
 )
 from course.grading.results.effective import Effective, Results
 from course.printable import one_line
-from course.scoring.verdict import CheckResult, Problem, Status
+from course.scoring.verdict import CheckResult, Status
 
 Writer = Callable[[Path, Results, ExportOptions], Written]
 
@@ -51,21 +51,17 @@ _IMPOSSIBLE = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff
 
 
 def write_junit(path: Path, results: Results, options: ExportOptions) -> Written:
+    from xml.sax.saxutils import quoteattr
+
     selection = select(results, options)
     with replacing(path) as handle:
         handle.write(b'<?xml version="1.0" encoding="utf-8"?>\n')
-        handle.write(b"<testsuites name=%s>\n" % _attribute(results.course.id))
+        handle.write(f"<testsuites name={quoteattr(_text(results.course.id))}>\n".encode())
         for effective in (item for item in selection.each() if not (item.missing or item.waiting)):
             handle.write(ET.tostring(suite(effective), encoding="utf-8", xml_declaration=False) + b"\n")
         handle.write(b"</testsuites>\n")
     selection.written.paths.append(path)
     return selection.written
-
-
-def _attribute(text: str) -> bytes:
-    from xml.sax.saxutils import quoteattr
-
-    return quoteattr(_text(text)).encode("utf-8")
 
 
 def suite(effective: Effective) -> ET.Element:
@@ -74,7 +70,10 @@ def suite(effective: Effective) -> ET.Element:
     cases = [_case(effective, check) for check in checks]
     problem = problem_for_student(verdict)
     if problem is not None:
-        cases.append(_not_graded(effective, problem))
+        case = ET.Element("testcase", {"name": "submission", "classname": _text(effective.exercise)})
+        attributes = {"message": _text(problem.message), "type": _text(problem.code)}
+        ET.SubElement(case, "error", attributes).text = _text(problem.help)
+        cases.append(case)
     kinds = [child.tag for case in cases for child in case]
     element = ET.Element(
         "testsuite",
@@ -112,14 +111,8 @@ def _facts(effective: Effective) -> dict[str, str]:
 
 
 def _case(effective: Effective, check: CheckResult) -> ET.Element:
-    element = ET.Element(
-        "testcase",
-        {
-            "name": _text(check.id),
-            "classname": _text(f"{effective.exercise}.{check.task}"),
-            "time": f"{check.duration_ms / 1e3:.3f}",
-        },
-    )
+    names = {"name": _text(check.id), "classname": _text(f"{effective.exercise}.{check.task}")}
+    element = ET.Element("testcase", {**names, "time": f"{check.duration_ms / 1e3:.3f}"})
     if check.status is Status.PASS:
         return element
     words = "\n".join(part for part in (check.title, check.message, check.help, check.diagnosis) if part)
@@ -128,13 +121,6 @@ def _case(effective: Effective, check: CheckResult) -> ET.Element:
     ET.SubElement(element, kind, attributes).text = _text(words)
     if check.stdout:
         ET.SubElement(element, "system-out").text = _text(check.stdout)
-    return element
-
-
-def _not_graded(effective: Effective, error: Problem) -> ET.Element:
-    element = ET.Element("testcase", {"name": "submission", "classname": _text(effective.exercise)})
-    attributes = {"message": _text(error.message), "type": _text(error.code)}
-    ET.SubElement(element, "error", attributes).text = _text(error.help)
     return element
 
 
@@ -172,19 +158,12 @@ _OF_A_RUN = {"csv", "jsonl", "html"}
 def export(results: Results, name: str, out: Path, target: Path | None, options: ExportOptions) -> Written:
     """Write one format.
 
-    Args:
-        out: folder of the grading run.
-        target: where to; in ``out`` under the format's own name if None, or in ``out/part`` if some exercises
-            or students are left out and a run keeps that file about all.
-
-    Raises:
-        UsageError: there is no such format, or it needs something that was not given.
-        MissingCapabilityError: students are missing in the roster, or it cannot be written.
+    Where no target is named, it goes into ``out``, the folder of the run, under the format's own name; or
+    into ``out/part``, if some exercises or students are left out and a run keeps that file about all.
     """
     if name not in FORMATS:
-        raise UsageError(
-            f"--format is {name!r}.", help=f"It takes {', '.join([*FORMATS, AUTOGRADER])}.", code="usage"
-        )
+        message = f"--format is {name!r}."
+        raise UsageError(message, help=f"It takes {', '.join([*FORMATS, AUTOGRADER])}.", code="usage")
     usual, write = FORMATS[name]
     if target is None:
         # The run's own file there is about the whole class, and stays so.

@@ -8,8 +8,9 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import msgspec
 
@@ -59,11 +60,8 @@ def number(value: float | None) -> str:
 
 
 def csv_bytes(headings: Sequence[str], rows: Iterable[Sequence[str]], *, mark: bool = True) -> bytes:
-    """A table with every cell quoted and safe.
-
-    Args:
-        mark: put a byte order mark in front, which makes Excel read UTF-8; not every program knows it.
-    """
+    """A table with every cell quoted and safe. The byte order mark makes Excel read UTF-8; not every program
+    knows it."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
     writer.writerow([safe_cell(cell) for cell in headings])
@@ -81,9 +79,8 @@ def write_bytes(path: Path, content: bytes) -> None:
 def replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file that takes its name when it is complete; until then the old one stays.
 
-    Raises:
-        UsageError: it is a folder, or a database: a gradebook, most likely.
-        MissingCapabilityError: there is no room, or it cannot be written there.
+    UsageError: it is a folder, or a database: a gradebook, most likely. MissingCapabilityError: there is
+    no room.
     """
     draft = None
     try:
@@ -102,11 +99,8 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
             return
         with contextlib.suppress(OSError), path.open("rb") as handle:
             if handle.read(len(_DATABASE)) == _DATABASE:
-                raise UsageError(
-                    f"{path} is a database, most likely a gradebook; it was not changed.",
-                    help="Name another file with -o.",
-                    code="is_a_database",
-                )
+                message = f"{path} is a database, most likely a gradebook; it was not changed."
+                raise UsageError(message, help="Name another file with -o.", code="is_a_database")
         path.parent.mkdir(parents=True, exist_ok=True)
         draft = path.with_name(f".{path.name}.{os.getpid()}")
         with draft.open("wb") as handle:
@@ -184,34 +178,23 @@ class GradeLine(msgspec.Struct, frozen=True, kw_only=True, tag="course.grade/1",
 
 def grade_line(effective: Effective, course: CourseRef) -> GradeLine:
     """A result as its line of JSON."""
-    verdict, key, override = effective.verdict, effective.result.key, effective.override
+    verdict, override = effective.verdict, effective.override
     codes = {"ungradable": 3, "grader_error": 70, NOT_YET: 3}
+    by_hand = override is not None and override.score is not None
+    judged = ("scope", "state", "checks", "error", "isolation", "warnings")
+    counts = ("score", "max_score", "passed", "late", "raw_score")
+    told: dict[str, Any] = asdict(effective.result.key)
+    told |= {name: getattr(verdict, name) for name in judged}
+    told |= {name: getattr(effective, name) for name in counts}
     return GradeLine(
         ok=verdict.all_pass,
         exit_code=codes.get(verdict.state, 0 if verdict.all_pass else 1),
         course=course,
-        student=key.student,
-        exercise=key.exercise,
-        scope=verdict.scope,
-        state=verdict.state,
-        score=effective.score,
-        max_score=effective.max_score,
-        passed=effective.passed,
-        checks=verdict.checks,
-        error=verdict.error,
-        submission_sha256=key.submission_sha256,
-        grader_version=key.grader_version,
-        seed=key.seed,
-        isolation=verdict.isolation,
-        late=effective.late,
         graded_at=effective.result.graded_at,
-        warnings=verdict.warnings,
-        raw_score=effective.raw_score,
         late_penalty=effective.penalty,
-        override=OverrideLine(override.score, override.reason, override.at)
-        if override is not None and override.score is not None
-        else None,
+        override=msgspec.convert(override, OverrideLine, from_attributes=True) if by_hand else None,
         submitted_at=utc(effective.submitted_at) or None,
+        **told,
     )
 
 
@@ -230,13 +213,10 @@ def write_jsonl(path: Path, results: Iterable[Effective], course: CourseRef) -> 
 
 def write_csv(path: Path, results: Results, chosen: Iterable[Effective]) -> None:
     """One row per student and exercise; every cell quoted, none of them a formula."""
-    headings = (*_COLUMNS, *(_PERSON if results.roster else ()))
-    write_bytes(path, csv_bytes(headings, (_row(results, effective) for effective in chosen)))
-
-
-def _row(results: Results, effective: Effective) -> list[str]:
-    cells = [column(effective) for column in _COLUMNS.values()]
-    if results.roster:
+    about = _PERSON if results.roster else ()
+    rows = []
+    for effective in chosen:
         person = results.person(effective.student)
-        cells += [str(getattr(person, name)) if person else "" for name in _PERSON]
-    return cells
+        cells = [str(getattr(person, name)) if person else "" for name in about]
+        rows.append([*(column(effective) for column in _COLUMNS.values()), *cells])
+    write_bytes(path, csv_bytes((*_COLUMNS, *about), rows))

@@ -29,7 +29,7 @@ from course.grading.exports.selection import (
     select,
 )
 from course.grading.results.effective import Effective, Results
-from course.grading.results.roster import Column, Person, in_english, moodle_key, read_text
+from course.grading.results.roster import Column, in_english, moodle_key, read_text
 from course.printable import counted, one_line, some
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, format_points, in_points
 
@@ -51,7 +51,12 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
     needs its own. An empty cell takes away what Canvas has, an excuse too: where we have no score, what its
     gradebook says is written back.
     """
-    selection = select(results, options, usable=_has_canvas_id, needs=_CANVAS)
+    selection = select(
+        results,
+        options,
+        usable=lambda one: bool(one.canvas_id or one.sis_user_id) and is_safe(one.sis_user_id),
+        needs=_CANVAS,
+    )
     _check_assignments(selection, options)
     check_settled(selection, options)
     most = {exercise.id: exercise.max_points for exercise in results.exercises()}
@@ -116,11 +121,9 @@ def _check_assignments(selection: Selection, options: ExportOptions) -> None:
             )
     for name, assignment in options.assignments.items():
         if not (assignment.isascii() and assignment.isdigit()):
-            raise UsageError(
-                f"The assignment's id for {name} is {assignment!r}, not a number.",
-                help="It is the number at the end of the assignment's address in Canvas.",
-                code="needs_assignment",
-            )
+            message = f"The assignment's id for {name} is {assignment!r}, not a number."
+            advice = "It is the number at the end of the assignment's address in Canvas."
+            raise UsageError(message, help=advice, code="needs_assignment")
         if options.columns and assignment not in options.columns:
             named = one_line(", ".join(column.heading for column in options.columns.values()))
             raise UsageError(
@@ -155,13 +158,11 @@ def _kept(written: Written) -> str:
     return f"stays so: {listed}. --overwrite writes ours in their place."
 
 
-def _has_canvas_id(person: Person) -> bool:
-    return bool(person.canvas_id or person.sis_user_id) and is_safe(person.sis_user_id)
-
-
 def write_moodle(path: Path, results: Results, options: ExportOptions) -> Written:
     """A file for Moodle's grade import, whose columns the teacher maps; an empty cell is no grade."""
-    selection = select(results, options, usable=_has_moodle_key, needs=_MOODLE)
+    selection = select(
+        results, options, usable=lambda one: bool(one.moodle_key) and _stays(one.moodle_key), needs=_MOODLE
+    )
     check_settled(selection, options)
     headings = ["moodle_key", "name", "email", *(results.title(name) for name in selection.exercises)]
     rows = []
@@ -193,16 +194,9 @@ def _how_to_map(rows: list[list[str]]) -> str:
     return "In Moodle, map moodle_key to the field that it was taken from: user name, ID number or email."
 
 
-def _has_moodle_key(person: Person) -> bool:
-    return bool(person.moodle_key) and _stays(person.moodle_key)
-
-
 def _table(selection: Selection, scales: Mapping[str, float] | None = None) -> dict[str, list[str]]:
-    """Scores by student, in the order of the exercises; empty where there is none.
-
-    Args:
-        scales: what a point of an exercise is worth on the platform; 1 if None.
-    """
+    """Scores by student, in the order of the exercises; empty where there is none. ``scales`` says what a
+    point of an exercise is worth on the platform."""
     table: dict[str, list[str]] = {}
     columns = {name: column for column, name in enumerate(selection.exercises)}
     for effective in selection.each():
@@ -233,17 +227,10 @@ _MODIFIED, _FEEDBACK, _OPEN = "Last modified (grade)", "Feedback comments", "Gra
 
 
 def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Written:
-    """The worksheet with the grades of one exercise.
-
-    Raises:
-        UsageError: there is no worksheet, the file is not one, or there are several exercises.
-    """
+    """The worksheet with the grades of one exercise; a UsageError if there is none, or not one exercise."""
     if options.worksheet is None:
-        raise UsageError(
-            "There is no worksheet to fill in.",
-            help="Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'.",
-            code="needs_roster",
-        )
+        advice = "Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'."
+        raise UsageError("There is no worksheet to fill in.", help=advice, code="needs_roster")
     selection = select(results, options, usable=lambda person: bool(person.moodle_key), needs=_NEEDS)
     if len(selection.exercises) != 1:
         raise UsageError(
@@ -312,8 +299,7 @@ def _read(path: Path) -> tuple[list[str], list[list[str]]]:
             raise _wrong(path, why)
         for row in reader:
             if len(row) != len(headings):
-                why = "it has another number of cells than the headings"
-                raise _wrong(path, f"line {reader.line_num}: {why}")
+                raise csv.Error("it has another number of cells than the headings")
             rows.append(row)
     except csv.Error as error:
         raise _wrong(path, f"line {reader.line_num}: {error}") from None
@@ -356,11 +342,8 @@ def _feedback(effective: Effective) -> str:
 
 
 def _wrong(path: Path, why: str) -> UsageError:
-    return UsageError(
-        f"{path}: {why}.",
-        help="Give the file that Moodle's 'Download grading worksheet' made, unchanged.",
-        code="invalid_worksheet",
-    )
+    advice = "Give the file that Moodle's 'Download grading worksheet' made, unchanged."
+    return UsageError(f"{path}: {why}.", help=advice, code="invalid_worksheet")
 
 
 # ---
@@ -404,20 +387,15 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
 
 def results_body(found: Sequence[Effective]) -> dict[str, Any]:
     """The body of one ``results.json`` over all exercises of one submission."""
-    tests = [
-        _test(effective.exercise, number_, check)
-        for effective in found
-        for number_, check in enumerate(checks_for_student(effective.verdict), 1)
-    ]
-    tests += [
-        _not_graded(effective, problem)
-        for effective in found
-        if (problem := problem_for_student(effective.verdict)) is not None
-    ]
-    scores = [effective.score for effective in found if effective.score is not None]
+    checks = [(one, checks_for_student(one.verdict)) for one in found]
+    tests = [_test(one.exercise, at, check) for one, all_ in checks for at, check in enumerate(all_, 1)]
+    problems = [(one, problem_for_student(one.verdict)) for one in found]
+    tests += [_not_graded(one, problem) for one, problem in problems if problem is not None]
+    # Of the public checks alone: a function's time could reveal its hidden inputs.
+    seconds = sum(check.duration_ms for _, all_ in checks for check in all_) / 1e3
     body: dict[str, Any] = {
-        "score": round(sum(scores), 4),
-        "execution_time": round(sum(_seconds(effective) for effective in found), 3),
+        "score": round(sum(one.score for one in found if one.score is not None), 4),
+        "execution_time": round(seconds, 3),
         "output": "\n\n".join(_words(effective) for effective in found),
         "output_format": "text",
         "visibility": "visible",
@@ -426,11 +404,6 @@ def results_body(found: Sequence[Effective]) -> dict[str, Any]:
         "extra_data": {"results": [_extra(effective) for effective in found]},
     }
     return dict(finite(body))
-
-
-def _seconds(effective: Effective) -> float:
-    """The time of the public checks alone: a function's time could reveal its hidden inputs."""
-    return sum(check.duration_ms for check in checks_for_student(effective.verdict)) / 1e3
 
 
 def _words(effective: Effective) -> str:

@@ -45,12 +45,8 @@ class ExportOptions:
 
 @dataclass(frozen=True)
 class Needs:
-    """The key by which a platform finds a student.
-
-    Attributes:
-        columns: of our own roster, one of which has to have it.
-        give: where to get the key, as the beginning of a sentence.
-    """
+    """The key by which a platform finds a student: the columns of our own roster, one of which has to have
+    it, and where to get it."""
 
     columns: tuple[str, ...]
     platform: str
@@ -67,11 +63,9 @@ class Needs:
 class Written:
     """The result of an export.
 
-    Attributes:
-        unmatched: students left out.
-        without_grade: "student exercise" of results without a score because the grader failed.
-        kept: rows of a platform's file that have a grade, feedback or an excuse of a teacher's, with it.
-        notes: what the instructor should know, one sentence each.
+    ``unmatched`` students are left out; ``without_grade`` are results ("student exercise") without a score
+    because the grader failed; rows of a platform's file are ``kept`` that have a grade, feedback or an
+    excuse of a teacher's.
     """
 
     paths: list[Path] = field(default_factory=list)
@@ -84,12 +78,8 @@ class Written:
 
 @dataclass
 class Selection:
-    """The results of an export.
-
-    Attributes:
-        people: student -> row of the roster; empty without one.
-        zeros: work that was not handed in counts as 0.
-    """
+    """The results of an export; ``people`` has the rows of the roster by student, ``zeros`` makes what was
+    not handed in count as 0."""
 
     results: Results
     exercises: tuple[str, ...]
@@ -100,17 +90,13 @@ class Selection:
     def each(self) -> Iterator[Effective]:
         """The results, ordered by student and exercise; missing ones are noted on the way."""
         left_out = set(self.written.unmatched)
-        for found in self.results.all():
-            effective = found
-            if effective.exercise not in self.exercises or effective.student in left_out:
+        for one in self.results.all():
+            if one.exercise not in self.exercises or one.student in left_out:
                 continue
-            if effective.missing:
-                if self.zeros:
-                    effective = replace(effective, score=0.0)
-            elif effective.score is None and not effective.waiting:
-                self.written.without_grade.append(f"{effective.student} {effective.exercise}")
+            if one.score is None and not (one.missing or one.waiting):
+                self.written.without_grade.append(f"{one.student} {one.exercise}")
             self.written.rows += 1
-            yield effective
+            yield replace(one, score=0.0) if self.zeros and one.missing else one
 
 
 def select(
@@ -121,32 +107,25 @@ def select(
 ) -> Selection:
     """Select the content of an export.
 
-    Args:
-        usable: whether a row of the roster has the key this format finds people by; without it a roster is
-            not needed.
-        needs: that key.
-
-    Raises:
-        NotFoundError: no such exercise.
-        UsageError: this format needs a roster.
-        MissingCapabilityError: the roster lacks students, and ``partial`` was not asked for.
+    ``usable`` says whether a row of the roster has the key this format finds people by, which is what it
+    ``needs``; without it a roster is not needed.
     """
     known = {exercise.id for exercise in results.exercises()}
     unknown = [name for name in (*options.exercises, *options.assignments) if name not in known]
     if unknown:
         raise no_exercise(unknown[0], sorted(known))
     if usable is not None and results.roster is None:
-        raise UsageError(
-            "This format finds students by the platform's ids, which are in a roster.",
-            help="Add --roster FILE; docs/instructor.md shows one.",
-            code="needs_roster",
-        )
+        message = "This format finds students by the platform's ids, which are in a roster."
+        advice = "Add --roster FILE; docs/instructor.md shows one."
+        raise UsageError(message, help=advice, code="needs_roster")
     written = Written()
     people: dict[str, Person] = {}
     key = " or ".join(needs.columns) if needs else ""
     if results.roster is not None:
-        if needs is not None and not options.partial:
-            _has_column(results.roster, needs)
+        # A roster in which nobody has the platform's key: a list of all students would hide that.
+        if needs is not None and not options.partial and not _has_any(results.roster, needs):
+            message = f"{results.roster.called} {needs.absent()}. Nothing was written."
+            raise MissingCapabilityError(message, help=needs.give, code="unmatched_students")
         people, unmatched = results.roster.match(results.students(), results.downloads)
         if usable is not None:
             keyless = [student for student, person in people.items() if not usable(person)]
@@ -168,18 +147,11 @@ def select(
 
 
 def check_settled(selection: Selection, options: ExportOptions) -> None:
-    """Refuse to tell a platform what is not known yet, or a zero that the instructor has not confirmed.
-
-    Raises:
-        MissingCapabilityError: a run has still to look at somebody's work; or something could not be graded,
-            and neither a score by hand nor ``zeros`` says that it is worth 0.
-    """
+    """Refuse to tell a platform what is not known yet, as a run has still to look at it, or a zero that
+    the instructor has not confirmed, by a score by hand or by ``zeros`` (MissingCapabilityError)."""
     left_out = set(selection.written.unmatched)
-    unread = {
-        item.student
-        for item in selection.results.all()
-        if item.waiting and item.exercise in selection.exercises
-    }
+    asked = [item for item in selection.results.all() if item.exercise in selection.exercises]
+    unread = {item.student for item in asked if item.waiting}
     waiting = sorted(map(repr, (selection.results.waiting | unread) - left_out))
     if waiting:
         are = "1 student is" if len(waiting) == 1 else f"{len(waiting)} students are"
@@ -193,8 +165,8 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
         return
     unseen = [
         f"{item.student!r} {item.exercise} ({item.verdict.error.code if item.verdict.error else 'no reason'})"
-        for item in selection.results.all()
-        if item.unsettled and item.exercise in selection.exercises and item.student not in left_out
+        for item in asked
+        if item.unsettled and item.student not in left_out
     ]
     if unseen:
         raise MissingCapabilityError(
@@ -213,17 +185,10 @@ def begins(path: Path, mark: bytes) -> bool:
 
 
 def refuse_to_replace(folder: Path, files: Iterable[Path], made: str) -> None:
-    """Refuse to replace files in a folder which no export to ``made`` wrote.
-
-    Raises:
-        UsageError: one of them is there.
-    """
+    """Refuse to replace files in a folder which no export to ``made`` wrote."""
     if names := [one_line(str(file.relative_to(folder))) for file in sorted(files) if file.exists()]:
-        raise UsageError(
-            f"{folder} has {some(names, 3)}, and no export to {made} made it. Nothing was written.",
-            help="Name a folder without it: -o FOLDER.",
-            code="out_exists",
-        )
+        message = f"{folder} has {some(names, 3)}, and no export to {made} made it. Nothing was written."
+        raise UsageError(message, help="Name a folder without it: -o FOLDER.", code="out_exists")
 
 
 def is_part(results: Results, options: ExportOptions) -> bool:
@@ -233,14 +198,8 @@ def is_part(results: Results, options: ExportOptions) -> bool:
     return options.partial and bool(results.unmatched(results.students()))
 
 
-def _has_column(roster: Roster, needs: Needs) -> None:
-    """Refuse a roster in which nobody has the platform's key: a list of all students would hide that."""
-    if not any(getattr(person, name) for person in roster.people for name in needs.columns):
-        raise MissingCapabilityError(
-            f"{roster.called} {needs.absent()}. Nothing was written.",
-            help=needs.give,
-            code="unmatched_students",
-        )
+def _has_any(roster: Roster, needs: Needs) -> bool:
+    return any(getattr(person, name) for person in roster.people for name in needs.columns)
 
 
 def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapabilityError:

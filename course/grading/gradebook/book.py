@@ -23,21 +23,8 @@ from typing import Any, Self, TypeVar
 import msgspec
 
 from course.errors import CourseError, IntegrityError
-from course.grading.gradebook.file import (
-    KEYS,
-    SEAL,
-    TABLES,
-    begin_writing,
-    explained,
-    open_file,
-    override_digest,
-    release,
-    rescue,
-    row_into,
-    seal,
-    unseal,
-)
-from course.grading.gradebook.file import create as create_file
+from course.grading.gradebook import file
+from course.grading.gradebook.file import KEYS, SEAL, TABLES, explained, override_digest, rescue, row_into
 from course.grading.gradebook.records import (
     Decision,
     GradedExercise,
@@ -68,12 +55,6 @@ def _masked(packed: bytes, salt: bytes) -> bytes:
     return _MASK + salt + mixed.to_bytes(len(packed))
 
 
-def _unmasked(stored: bytes) -> bytes:
-    if stored[:1] != _MASK:
-        return stored
-    return _masked(stored[1 + _SALT :], stored[1 : 1 + _SALT])[1 + _SALT :]
-
-
 T = TypeVar("T")
 _CHECKPOINT_S = 5.0  # the most that a power cut costs
 
@@ -82,7 +63,6 @@ class Gradebook:
     """An open gradebook. What reads rows raises IntegrityError where one is not what was written.
 
     Args:
-        path: the file.
         create: make a new one; otherwise it must exist.
         writing: lock it against all other processes.
 
@@ -104,8 +84,8 @@ class Gradebook:
         self._changed = False
         self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
         if create:
-            create_file(path)
-        self._db = open_file(path, writing=self._writing)
+            file.create(path)
+        self._db = file.open_file(path, writing=self._writing)
         ((self._run,),) = self._rows("SELECT ifnull(max(number), 0) FROM runs")
 
     def __enter__(self) -> Self:
@@ -123,9 +103,9 @@ class Gradebook:
         try:
             with explained(self.path):
                 if self._changed:
-                    seal(self._db)
+                    file.seal(self._db)
                 if self._begun:
-                    release(self._db)
+                    file.release(self._db)
         finally:
             self._db.close()
 
@@ -168,29 +148,23 @@ class Gradebook:
 
     def set_exercises(self, exercises: Iterable[GradedExercise]) -> None:
         """Note the exercises that are graded; earlier ones stay."""
+        rows = [msgspec.structs.astuple(exercise) for exercise in exercises]
         with self._transaction():
-            self._db.executemany(
-                row_into("exercises", "INSERT OR REPLACE"),
-                [msgspec.structs.astuple(exercise) for exercise in exercises],
-            )
+            self._db.executemany(row_into("exercises", "INSERT OR REPLACE"), rows)
 
     def exercises(self) -> tuple[GradedExercise, ...]:
         """The graded exercises, in the order of the course."""
+        query = "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
         with explained(self.path):
-            rows = self._db.execute(
-                "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
-            )
-            return tuple(_as(GradedExercise, row) for row in rows)
+            return tuple(_as(GradedExercise, row) for row in self._db.execute(query))
 
     # -- students -------------------------------------------------------------------------------------
 
     def set_students(self, students: Mapping[str, PlatformIdentity]) -> None:
         """Note the students' identities in the system they were downloaded from."""
+        rows = [(name, msgspec.json.encode(who).decode()) for name, who in students.items()]
         with self._transaction():
-            self._db.executemany(
-                row_into("students", "INSERT OR REPLACE"),
-                [(name, msgspec.json.encode(who).decode()) for name, who in students.items()],
-            )
+            self._db.executemany(row_into("students", "INSERT OR REPLACE"), rows)
 
     def students(self) -> dict[str, PlatformIdentity]:
         """The students' identities in the system they were downloaded from; empty for plain folders."""
@@ -242,13 +216,11 @@ class Gradebook:
         return int(newest[0]) + 1
 
     def confirm(self, key: Key, moving: AbstractContextManager[None] | None = None) -> bool:
-        """Whether this very submission was graded; if so, make that the newest result of its student again.
+        """Whether this very submission was graded; if so, make that the newest result of its student
+        again, in ``moving``.
 
         A student who hands in an earlier version again gets the score of that version. A result of other
         graders than the key's counts too, so that nothing is graded again without need.
-
-        Args:
-            moving: entered while another result becomes the newest.
         """
         number = self._find(key)
         if number is None:
@@ -282,11 +254,7 @@ class Gradebook:
         yield from self._results(f" WHERE {newest}", arguments)
 
     def verify(self) -> None:
-        """Look at every page, every decision, and all that opening leaves unread because it is large.
-
-        Raises:
-            IntegrityError: the file is damaged.
-        """
+        """Look at every page, every decision, and all that opening leaves unread because it is large."""
         with explained(self.path):
             told = self._db.execute("PRAGMA quick_check(1)").fetchone()[0]
             if told != "ok":
@@ -341,7 +309,10 @@ class Gradebook:
         if not rows:
             return None
         try:
-            files = zlib.decompressobj().decompress(_unmasked(rows[0][0]), _MOST_UNPACKED)
+            stored = rows[0][0]
+            if stored[:1] == _MASK:
+                stored = _masked(stored[1 + _SALT :], stored[1 : 1 + _SALT])[1 + _SALT :]
+            files = zlib.decompressobj().decompress(stored, _MOST_UNPACKED)
             return msgspec.msgpack.decode(files, type=dict[str, bytes])
         except (zlib.error, msgspec.DecodeError, TypeError):
             raise _failed_checksum(f"The submission {sha256[:12]}", self.path) from None
@@ -349,11 +320,7 @@ class Gradebook:
     # -- what an instructor decided -------------------------------------------------------------------
 
     def add_override(self, override: Override, before: str = "") -> None:
-        """Store a decision, here and in the journal; earlier ones are kept.
-
-        Args:
-            before: what counted before, for the journal.
-        """
+        """Store a decision, here and in the journal, with what counted before; earlier ones are kept."""
         at = override.at or _now()
         row = (override.student, override.exercise, override.score, override.reason, at)
         with self._transaction():
@@ -396,11 +363,7 @@ class Gradebook:
             return [_as(Decision, row) for row in rows]
 
     def set_waiting(self, students: Iterable[str], *, others: bool) -> None:
-        """Note whose work a run has still to look at.
-
-        Args:
-            others: those who waited before go on waiting.
-        """
+        """Note whose work a run has still to look at; with ``others``, beside those who waited before."""
         with self._transaction():
             if not others:
                 self._db.execute("DELETE FROM waiting")
@@ -452,12 +415,12 @@ class Gradebook:
         start = time.perf_counter()
         with explained(self.path):
             if self._writing and not self._begun:
-                begin_writing(self._db)
+                file.begin_writing(self._db)
                 self._begun = True
             self._db.execute("BEGIN IMMEDIATE")
             try:
                 if not self._changed:
-                    unseal(self._db)
+                    file.unseal(self._db)
                 yield
                 self._db.execute("COMMIT")
                 self._changed = True
@@ -479,11 +442,10 @@ class _State(msgspec.Struct):
 
 def _about(student: str | None, exercise: str | None) -> tuple[str, tuple[str, ...]]:
     """A condition on student and exercise, with its parameters; empty where both are None."""
-    asked = [
-        (name, value) for name, value in (("student", student), ("exercise", exercise)) if value is not None
-    ]
-    where = " AND ".join(f"{name} = ?" for name, _ in asked)
-    return (f" WHERE {where}" if asked else ""), tuple(value for _, value in asked)
+    asked = {"student = ?": student, "exercise = ?": exercise}
+    asked = {condition: value for condition, value in asked.items() if value is not None}
+    where = f" WHERE {' AND '.join(asked)}" if asked else ""
+    return where, tuple(map(str, asked.values()))
 
 
 #: Tables with contents that the seal does not cover: what names a row of them, and how it is called.

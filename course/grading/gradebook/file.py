@@ -21,7 +21,6 @@ import os
 import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
@@ -29,8 +28,8 @@ from course.errors import CourseError, IntegrityError, MissingCapabilityError, N
 from course.printable import command, one_line
 from course.strangers import no_programs
 
-#: 2 had no seal; 3 had no digests of rows, no snapshots and no journal; 4 did not know who waits. All can be
-#: read.
+#: 2 had no seal; 3 had no digests of rows, no snapshots, no journal, and did not know who waits. These can be
+#: read; 4 was never released.
 FORMAT_VERSION = 5
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
@@ -192,20 +191,16 @@ def rescue(path: Path, otherwise: str = "") -> str:
 def explained(path: Path) -> Iterator[None]:
     """Errors of SQLite, and of what reads the content of a row, as sentences.
 
-    Raises:
-        UsageError: another process is using the file.
-        MissingCapabilityError: it cannot be read or written where it is.
-        IntegrityError: it is damaged.
+    UsageError: another process is using the file. MissingCapabilityError: it cannot be read or written
+    where it is. IntegrityError: it is damaged.
     """
     try:
         yield
     except sqlite3.OperationalError as error:
         raise _operational(path, error) from None
     except (sqlite3.DatabaseError, msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
-        raise IntegrityError(
-            f"{path} is damaged: {one_line(str(error))[:_MOST_SAID]}.",
-            help=rescue(path),
-        ) from None
+        message = f"{path} is damaged: {one_line(str(error))[:_MOST_SAID]}."
+        raise IntegrityError(message, help=rescue(path)) from None
 
 
 def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
@@ -214,19 +209,14 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
     kind = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
     if kind in {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}:
         return UsageError(
-            f"Another run is writing {path}.",
-            help="Wait for it to end.",
-            code="gradebook_locked",
+            f"Another run is writing {path}.", help="Wait for it to end.", code="gradebook_locked"
         )
     # SQLITE_ERROR: a table or a column that our statements name is not there.
     if kind in {sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}:
         return IntegrityError(f"{path} is damaged: {error}.", help=rescue(path))
     if kind == sqlite3.SQLITE_FULL:
-        message, fix = (
-            f"The disk is full: {path} cannot grow.",
-            "Make room, then give the command again (a run with --resume).",
-        )
-        code = "disk_full"
+        message, code = f"The disk is full: {path} cannot grow.", "disk_full"
+        fix = "Make room, then give the command again (a run with --resume)."
     elif kind in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}:
         message, code = f"{path} cannot be written.", "read_only"
         fix = "Make the folder writable, or copy it somewhere that is."
@@ -236,12 +226,11 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
 
 
 def create(path: Path) -> None:
-    """An empty gradebook, made under another name first: a run killed here leaves none, not half of one.
-
-    Raises:
-        UsageError: another run made one meanwhile.
-    """
-    draft = _draft(path)
+    """An empty gradebook, made under another name first: a run killed here leaves none, not half of one. It
+    is a UsageError if another run made one meanwhile."""
+    # A name that no other process uses; a killed run's name is reused only if its process is gone.
+    names = (f"{path.stem}.new-{os.getpid()}-{number}" for number in itertools.count())
+    draft = next(draft for draft in map(path.with_name, names) if not draft.exists())
     try:
         with explained(path), contextlib.closing(sqlite3.connect(draft)) as db:
             _know_digests(db)
@@ -254,49 +243,27 @@ def create(path: Path) -> None:
         draft.unlink(missing_ok=True)
 
 
-def _draft(path: Path) -> Path:
-    """A name that no other process uses; a killed run's name is reused only if its process is gone."""
-    for number in itertools.count():
-        draft = path.with_name(f"{path.stem}.new-{os.getpid()}-{number}")
-        if not draft.exists():
-            return draft
-    raise AssertionError  # count() does not end
-
-
 def _publish(draft: Path, path: Path) -> None:
     """Give the draft its name, unless there is such a file: of two simultaneous runs, one gets an error."""
     try:
         path.hardlink_to(draft)
     except (FileExistsError, FileNotFoundError):
-        raise UsageError(
-            f"Another run is writing {path}.", help="Name another --out.", code="gradebook_locked"
-        ) from None
+        message = f"Another run is writing {path}."
+        raise UsageError(message, help="Name another --out.", code="gradebook_locked") from None
     except OSError:  # a file system without hard links
         if path.exists():
-            raise UsageError(
-                f"{path} exists already; nothing was touched.", help="Name a new folder.", code="out_exists"
-            ) from None
+            message = f"{path} exists already; nothing was touched."
+            raise UsageError(message, help="Name a new folder.", code="out_exists") from None
         draft.replace(path)
 
 
 def open_file(path: Path, *, writing: bool) -> sqlite3.Connection:
-    """An open, recognised and up-to-date gradebook.
-
-    Args:
-        writing: lock it against all other processes until it is closed.
-
-    Raises:
-        NotFoundError: there is none.
-        UsageError: another process is writing it.
-        MissingCapabilityError: it belongs to a newer version, or cannot be written here.
-        IntegrityError: the file is damaged or no gradebook.
-    """
+    """An open, recognised and up-to-date gradebook, or what ``Gradebook`` raises; for writing it is locked
+    against all other processes until it is closed."""
     if not path.is_file():
-        raise NotFoundError(
-            f"There is no gradebook at {path}.",
-            help=rescue(path, "Name the folder that `course grade run --out` wrote."),
-            code="gradebook_not_found",
-        )
+        message = f"There is no gradebook at {path}."
+        advice = rescue(path, "Name the folder that `course grade run --out` wrote.")
+        raise NotFoundError(message, help=advice, code="gradebook_not_found")
     with explained(path):
         db = sqlite3.connect(path, isolation_level=None, timeout=1.0)
     try:
@@ -329,9 +296,8 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         db.execute("SELECT count(*) FROM meta").fetchone()
     kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
     if kept is not None and kept[0] != _digest(db, _SEALED if version < FORMAT_VERSION else _SEALED_NOW):
-        raise IntegrityError(
-            f"{path} is damaged: its content is not what the course wrote.", help=rescue(path)
-        )
+        message = f"{path} is damaged: its content is not what the course wrote."
+        raise IntegrityError(message, help=rescue(path))
     if version < FORMAT_VERSION and writing:
         _keep(db, path, version)
         db.executescript(
@@ -390,17 +356,11 @@ def release(db: sqlite3.Connection) -> None:
 
 
 def _checked_format(db: sqlite3.Connection, path: Path) -> int:
-    if _one(db, "PRAGMA application_id") != _APPLICATION_ID:
+    if db.execute("PRAGMA application_id").fetchone()[0] != _APPLICATION_ID:
         raise IntegrityError(f"{path} is not a gradebook.", help=rescue(path, "Name another folder."))
-    version = int(_one(db, "PRAGMA user_version"))
+    version = int(db.execute("PRAGMA user_version").fetchone()[0])
     if version > FORMAT_VERSION:
-        raise MissingCapabilityError(
-            f"{path} was written by a newer version of this course (format {version}).",
-            help="Update the course; nothing was changed.",
-            code="newer_format",
-        )
+        message = f"{path} was written by a newer version of this course (format {version})."
+        advice = "Update the course; nothing was changed."
+        raise MissingCapabilityError(message, help=advice, code="newer_format")
     return version
-
-
-def _one(db: sqlite3.Connection, query: str) -> Any:
-    return db.execute(query).fetchone()[0]

@@ -19,19 +19,8 @@ from pathlib import Path
 import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError
-from course.grading.gradebook.file import (
-    KEYS,
-    SEAL,
-    TABLES,
-    create,
-    explained,
-    open_file,
-    override_digest,
-    release,
-    row_digest,
-    row_into,
-    seal,
-)
+from course.grading.gradebook import file
+from course.grading.gradebook.file import KEYS, SEAL, TABLES, override_digest, row_digest
 from course.isolation.launch import private_folder, remove_tree
 
 # ---
@@ -59,42 +48,33 @@ class _DamagedError(Exception):
 
 
 def raw_rows(data: bytes) -> Iterator[tuple[int | None, tuple[Cell, ...]]]:
-    """Everything that can be read as a row, with its number if it has one.
-
-    Args:
-        data: a whole file.
-    """
-    size, reserved = _sizes(data)
-    pages = _Pages(data, size, size - reserved)
-    for number in range(len(data) // size):
+    """Everything in a whole file that can be read as a row, with its number if it has one."""
+    pages = _Pages(data)
+    for number in range(len(data) // pages.size):
         yield from pages.rows(number)
 
 
-def _sizes(data: bytes) -> tuple[int, int]:
-    """Bytes in a page, and the unused ones of these; from the header, or our own values if it is damaged."""
-    if data[:16] == _MAGIC:
-        size = struct.unpack(">H", data[16:18])[0]
-        size = 65536 if size == 1 else size
-        if 512 <= size <= 65536 and size & (size - 1) == 0 and data[20] < 64:
-            return size, data[20]
-    return _USUAL_PAGE, 0
-
-
 class _Pages:
-    def __init__(self, data: bytes, size: int, usable: int) -> None:
+    """The pages of a file, whose size its header has, and how many bytes in each are unused."""
+
+    def __init__(self, data: bytes) -> None:
         self._data = data
-        self._size = size
-        self._usable = usable
+        self.size = self._usable = _USUAL_PAGE  # our own value, where the header is damaged
+        if data[:16] == _MAGIC:
+            size = struct.unpack(">H", data[16:18])[0]
+            size = 65536 if size == 1 else size
+            if 512 <= size <= 65536 and size & (size - 1) == 0 and data[20] < 64:
+                self.size, self._usable = size, size - data[20]
 
     def rows(self, number: int) -> Iterator[tuple[int | None, tuple[Cell, ...]]]:
         """The rows that begin on one page."""
-        page = self._data[number * self._size : (number + 1) * self._size]
+        page = self._data[number * self.size : (number + 1) * self.size]
         head = 100 if number == 0 else 0
         kind = page[head]
         if kind not in {_TABLE_LEAF, _INDEX_LEAF, _INDEX_INTERIOR}:
             return
         pointers = head + (12 if kind == _INDEX_INTERIOR else 8)
-        count = min(struct.unpack(">H", page[head + 3 : head + 5])[0], (self._size - pointers) // 2)
+        count = min(struct.unpack(">H", page[head + 3 : head + 5])[0], (self.size - pointers) // 2)
         for (at,) in struct.iter_unpack(">H", page[pointers : pointers + 2 * count]):
             try:
                 yield self._row(page, at, kind)
@@ -102,9 +82,7 @@ class _Pages:
                 continue  # of this row nothing is left
 
     def _row(self, page: bytes, at: int, kind: int) -> tuple[int | None, tuple[Cell, ...]]:
-        if kind == _INDEX_INTERIOR:
-            at += 4
-        length, at = _varint(page, at)
+        length, at = _varint(page, at + 4 * (kind == _INDEX_INTERIOR))
         number = None
         if kind == _TABLE_LEAF:
             number, at = _varint(page, at)
@@ -126,8 +104,8 @@ class _Pages:
         following = struct.unpack(">I", page[at + here : at + here + 4])[0] if left else 0
         seen: set[int] = set()
         while left > 0:
-            start = (following - 1) * self._size
-            if following in seen or following < 2 or start + self._size > len(self._data):
+            start = (following - 1) * self.size
+            if following in seen or following < 2 or start + self.size > len(self._data):
                 raise _DamagedError
             seen.add(following)
             following = struct.unpack(">I", self._data[start : start + 4])[0]
@@ -190,30 +168,24 @@ def _value(body: bytes, at: int, kind: int) -> tuple[Cell, int]:
 # Two copies beside a gradebook: of its newest state, and of the one before.
 
 
-_KEPT = 2
-
-
 def back_up(path: Path) -> None:
     """Copy a closed gradebook; the previous copy becomes the older one."""
     draft = _named(path, 0)
     try:
         shutil.copyfile(path, draft)
-        for number in range(_KEPT, 1, -1):
-            if _named(path, number - 1).exists():
-                _named(path, number - 1).replace(_named(path, number))
+        if _named(path, 1).exists():
+            _named(path, 1).replace(_named(path, 2))
         draft.replace(_named(path, 1))
     except OSError as error:
         draft.unlink(missing_ok=True)
-        raise MissingCapabilityError(
-            f"The backup of {path} cannot be written: {error.strerror}.",
-            help="The gradebook is complete. Make room, and give the command again (a run with --resume).",
-            code="no_backup",
-        ) from None
+        message = f"The backup of {path} cannot be written: {error.strerror}."
+        advice = "The gradebook is complete. Make room, and give the command again (a run with --resume)."
+        raise MissingCapabilityError(message, help=advice, code="no_backup") from None
 
 
 def backups(path: Path) -> list[Path]:
     """The existing copies, newest first."""
-    return [found for number in range(1, _KEPT + 1) if (found := _named(path, number)).is_file()]
+    return [found for found in (_named(path, 1), _named(path, 2)) if found.is_file()]
 
 
 def _named(path: Path, number: int) -> Path:
@@ -230,13 +202,8 @@ _NUMBERED = {"runs", "overrides", "results", "journal"}
 
 @dataclass
 class Salvaged:
-    """The recovered rows, and the losses.
-
-    Attributes:
-        rows: number of rows by table.
-        from_backup: of these, those only a backup had.
-        lost: known losses, a sentence each.
-    """
+    """The recovered rows by table, how many of these only a backup had, and the known losses, a sentence
+    each."""
 
     rows: Counter[str] = field(default_factory=Counter)
     from_backup: Counter[str] = field(default_factory=Counter)
@@ -246,19 +213,14 @@ class Salvaged:
 def salvage(path: Path, target: Path) -> Salvaged:
     """Write a new gradebook from all intact rows of a damaged one and its backups; those stay unchanged.
 
-    Raises:
-        NotFoundError: there is no gradebook and no backup.
-        IntegrityError: no row in them is intact.
-        UsageError: ``target`` exists.
-        MissingCapabilityError: it cannot be written.
+    NotFoundError: there is no gradebook and no backup. IntegrityError: no row in them is intact.
+    UsageError: ``target`` exists. MissingCapabilityError: it cannot be written.
     """
     others = backups(path)
     if not path.is_file() and not others:
-        raise NotFoundError(
-            f"There is no gradebook at {path}, and no backup of one.",
-            help="Name the folder that `course grade run --out` wrote.",
-            code="gradebook_not_found",
-        )
+        message = f"There is no gradebook at {path}, and no backup of one."
+        advice = "Name the folder that `course grade run --out` wrote."
+        raise NotFoundError(message, help=advice, code="gradebook_not_found")
     found: dict[str, dict[Row, Row]] = {name: {} for name in TABLES}
     told = Salvaged()
     if path.is_file():
@@ -273,9 +235,8 @@ def salvage(path: Path, target: Path) -> Salvaged:
     if waiting is not None:  # a backup does not know who was graded since
         found["waiting"] = waiting
     if not any(found.values()):
-        raise IntegrityError(
-            f"{path} has no intact row, and there is no backup.", help="Grade the class into a new folder."
-        )
+        message = f"{path} has no intact row, and there is no backup."
+        raise IntegrityError(message, help="Grade the class into a new folder.")
     told.lost = list(_lost(found))
     if told.lost:  # whose results are among it is not known: from now on nothing says who handed in nothing
         found["meta"]["looked",] = ("looked", "{}")
@@ -316,17 +277,15 @@ def _placed(number: int | None, values: Row) -> tuple[str, Row]:
     for name, columns in TABLES.items():
         if len(values) == len(columns) + 1:
             cells = (number, *values[1:-1]) if name in _NUMBERED else values[:-1]
-            if row_digest(name, *cells) == values[-1] and (name != "overrides" or _is_whole(cells)):
+            if row_digest(name, *cells) != values[-1]:
+                continue
+            if name != "overrides":
+                return name, cells
+            _, student, exercise, score, reason, at, digest = cells  # the one that a gradebook looks for
+            told = str(student), str(exercise), score, str(reason), str(at)
+            if not isinstance(score, str | bytes) and override_digest(*told) == digest:  # type: ignore[arg-type]
                 return name, cells
     return "", ()
-
-
-def _is_whole(cells: Row) -> bool:
-    """Whether an override has the digest that the gradebook will look for."""
-    _, student, exercise, score, reason, at, digest = cells
-    if isinstance(score, str | bytes):
-        return False
-    return override_digest(str(student), str(exercise), score, str(reason), str(at)) == digest
 
 
 class _Decided(msgspec.Struct):
@@ -355,15 +314,15 @@ def _take_decided(found: dict[str, dict[Row, Row]]) -> None:
 
 
 def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:
-    create(target)
-    db = open_file(target, writing=True)
-    with contextlib.closing(db), explained(target):
+    file.create(target)
+    db = file.open_file(target, writing=True)
+    with contextlib.closing(db), file.explained(target):
         db.execute("BEGIN IMMEDIATE")
         for name, rows in found.items():
-            db.executemany(row_into(name, "INSERT OR IGNORE"), rows.values())
+            db.executemany(file.row_into(name, "INSERT OR IGNORE"), rows.values())
         db.execute("COMMIT")
-        seal(db)
-        release(db)
+        file.seal(db)
+        file.release(db)
 
 
 #: What a lost fact about the class is called.

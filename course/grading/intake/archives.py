@@ -32,17 +32,8 @@ from course.grading.intake import downloads
 from course.grading.intake.downloads import is_folder_meant, is_meant
 from course.grading.pipes import Servant, limit_cpu, limit_memory, served, write_frame
 from course.grading.quiz import checked_record
-from course.handed_in.limits import (
-    FORMAT_VERSION,
-    MANIFEST,
-    MAX_ARCHIVE,
-    MAX_CODE,
-    MAX_FILE,
-    MAX_FILES,
-    MAX_NOTEBOOK,
-    MAX_STREAMED,
-    MAX_UNPACKED,
-)
+from course.handed_in import limits
+from course.handed_in.limits import MANIFEST, MAX_FILE, MAX_NOTEBOOK, MAX_STREAMED, MAX_UNPACKED
 from course.handed_in.notebook import notebook_source
 from course.isolation.inside import statements
 from course.printable import one_line, quoted, some
@@ -58,21 +49,19 @@ MAX_LISTED = 1 << 20
 _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl", ".jar")
 
 
-class RefusedError(Exception):
+class RefusedError(UngradableError):
     """One candidate cannot be read: it must not be opened, is damaged, or is not there. All here raise it."""
 
     def __init__(self, code: str, message: str, advice: str) -> None:
-        super().__init__(message)
+        super().__init__(one_line(message), help=advice, code=code)
         self.problem = Problem(code, one_line(message), advice)
 
 
 def quiz_of(path: Path, loose: bytes) -> object:
-    """The quiz attempts in what ``course submit`` wrote: an archive, or its metadata alone once unpacked.
+    """The quiz attempts in what ``course submit`` wrote: an archive, or its metadata alone once unpacked
+    (``loose``).
 
     Words if they have another form, or if the metadata cannot be read and no file beside it will say so.
-
-    Args:
-        loose: the metadata, unpacked; empty if it is in an archive.
     """
     alone = bool(loose)
     try:
@@ -96,14 +85,9 @@ def _is_ours(manifest: bytes) -> bool:
 
 
 class ArchiveContent(msgspec.Struct, frozen=True):
-    """An archive's file for an exercise.
-
-    Attributes:
-        name: in the archive.
-        notes: assumptions that were made, one sentence each.
-        copies: the members that are the same file, this one included.
-        written: the Python and NumPy that it was written with, by its own account; empty if it has none.
-    """
+    """An archive's file for an exercise, by its name there, with a sentence on each assumption that was
+    made, the members that are the same file, and the Python and NumPy that it was written with, if it says
+    so."""
 
     name: str
     content: bytes
@@ -113,11 +97,7 @@ class ArchiveContent(msgspec.Struct, frozen=True):
 
 
 def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
-    """A zip's module or notebook for an exercise; None if there is neither.
-
-    Raises:
-        RefusedError: also where it holds several.
-    """
+    """A zip's module or notebook for an exercise; None if there is neither. Several are refused."""
 
     held = _given(_held(path))
     wanted = _wanted_members(held.names, exercise)
@@ -134,26 +114,22 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
     listed = manifest.get("files", {})
     expected = listed.get(name, listed.get(raw))
     if manifest and expected != hashlib.sha256(content).hexdigest():
-        raise RefusedError(
-            "checksum_mismatch",
-            f"{quoted(name)} in {quoted(path.name)} is not the file that `course submit` put there.",
-            "Make the archive again with `course submit` and upload it unchanged.",
-        )
+        message = f"{quoted(name)} in {quoted(path.name)} is not the file that `course submit` put there."
+        advice = "Make the archive again with `course submit` and upload it unchanged."
+        raise RefusedError("checksum_mismatch", message, advice)
     notes = tuple(_notes(path, name, raw, wanted, exercise))
     copies = tuple(held.names[other] for other in wanted)
     return ArchiveContent(raw, content, notes, copies, _written(manifest.get("written_with")))
 
 
 _VERSION = re.compile(r"[\w.+-]{1,40}")
+_TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 
 
 def _written(told: Any) -> str:
     """The versions that a manifest claims, as part of a sentence."""
     said = [(name, told.get(key)) for key, name in _TOOLS] if isinstance(told, dict) else []
     return " and ".join(f"{name} {v}" for name, v in said if isinstance(v, str) and _VERSION.fullmatch(v))
-
-
-_TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 
 
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
@@ -189,19 +165,15 @@ def _wanted_members(members: Iterable[str], exercise: Exercise) -> list[str]:
     return sorted(found, key=lambda name: (PurePosixPath(name).name not in names, "/" not in name, name))
 
 
-def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
-    """Names and contents of the modules and notebooks in a zip, except those to skip."""
-    held = _given(_held(path))
-    return [(raw, _given(held.files[name])) for name in held.files if (raw := held.names[name]) not in skip]
-
-
 def member_of(path: Path, name: str, meter: downloads.Meter) -> bytes:
     """The content of one member, by the name the archive has for it, or that name with plain slashes."""
 
     def is_it(plain: str, raw: str) -> bool:
         return name in {raw, raw.replace("\\", "/"), plain}
 
-    if (kind := _kind(path)) in _TARS:
+    with path.open("rb") as handle:
+        kind = downloads.kind_of(path.name, handle.read(512))
+    if kind in _TARS:
         found = dict(_compressed(path, kind, meter))
         if name in found:
             return found[name]
@@ -225,20 +197,11 @@ def _compressed(path: Path, kind: str, meter: downloads.Meter) -> list[tuple[str
         raise _refused(path, f"it cannot be read ({error})") from None
 
 
-def _kind(path: Path) -> str:
-    with path.open("rb") as handle:
-        return downloads.kind_of(path.name, handle.read(512))
-
-
 @dataclass(frozen=True)
 class _Held:
-    """A zip whose members are all harmless.
-
-    Attributes:
-        names: in the archive, by those without the folders around all of them.
-        files: what may be code, or why one cannot be read, by the latter.
-        manifest: of ``course submit``, or why it cannot be read; empty in an archive made by hand.
-    """
+    """A zip whose members are all harmless: their names there, by those without the folders around all of
+    them; by these, what may be code; and the manifest of ``course submit``, if it has one. What cannot be
+    read is why."""
 
     names: dict[str, str]
     files: dict[str, bytes | RefusedError]
@@ -280,8 +243,8 @@ def _held(path: Path) -> _Held | RefusedError:
 def _read(path: Path, wanted: Callable[[str, str], bool]) -> _Held:
     if not stat.S_ISREG(path.lstat().st_mode):
         raise _refused(path, "it is not a regular file")
-    if path.stat().st_size > MAX_ARCHIVE:
-        raise _refused(path, f"it is larger than {MAX_ARCHIVE >> 20} MB")
+    if path.stat().st_size > limits.MAX_ARCHIVE:
+        raise _refused(path, f"it is larger than {limits.MAX_ARCHIVE >> 20} MB")
     if _listed(path) > MAX_LISTED:
         raise _refused(path, "it holds tens of thousands of files")
     with zipfile.ZipFile(path) as archive:
@@ -306,9 +269,8 @@ def _listed(path: Path) -> int:
 
 
 def _refused(path: Path, why: str) -> RefusedError:
-    return RefusedError(
-        "refused_archive", f"{quoted(path.name)}: {why}.", "Hand in the zip that `course submit` writes."
-    )
+    advice = "Hand in the zip that `course submit` writes."
+    return RefusedError("refused_archive", f"{quoted(path.name)}: {why}.", advice)
 
 
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
@@ -318,8 +280,8 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
         raise _refused(path, downloads.DEEP)
     unwanted = downloads.clutter(plain)
     files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
-    if len(files) > MAX_FILES:
-        raise _refused(path, f"it holds more than {MAX_FILES} files")
+    if len(files) > limits.MAX_FILES:
+        raise _refused(path, f"it holds more than {limits.MAX_FILES} files")
     code = (info for info in files if downloads.may_be_code(info.filename.replace("\\", "/")))
     if sum(info.file_size for info in code) > MAX_UNPACKED:
         raise _refused(path, f"its files unpack to more than {MAX_UNPACKED >> 20} MB")
@@ -359,12 +321,10 @@ def _read_manifest(path: Path, content: bytes) -> dict[str, Any]:
     with contextlib.suppress(ValueError, RecursionError):
         manifest = json.loads(content)
     match manifest:
-        case {"format_version": int(version)} if version > FORMAT_VERSION:
-            raise RefusedError(
-                "newer_format",
-                f"{quoted(path.name)} was written by a newer version of this course.",
-                "Update the course on the machine that grades.",
-            )
+        case {"format_version": int(version)} if version > limits.FORMAT_VERSION:
+            message = f"{quoted(path.name)} was written by a newer version of this course."
+            advice = "Update the course on the machine that grades."
+            raise RefusedError("newer_format", message, advice)
         case {"format_version": int(), "files": dict(files)} if files or manifest.get("quiz"):
             return dict(manifest)
     raise _refused(path, f"its {MANIFEST} is damaged" if path.name != MANIFEST else "it is damaged")
@@ -457,20 +417,12 @@ class Reader:
         return told.content, told.record
 
     def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
-        """An archive's file for an exercise; None if it has none.
-
-        Raises:
-            RefusedError: it must not be opened, or is damaged.
-        """
+        """An archive's file for an exercise; None if it has none."""
         return self._ask(_about("archive", path, exercise=exercise)).found
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
-        """What a file is, and the functions that it defines, or each file in an archive.
-
-        Args:
-            skip: members of the archive to ignore.
-            functions: the names to look for.
-        """
+        """What a file is, and which of these functions it defines, or each file in an archive but those to
+        skip."""
         return self._ask(_about("outline", path, functions=functions, skip=skip)).outlines
 
     def member(self, path: Path, name: str) -> bytes:
@@ -478,20 +430,14 @@ class Reader:
         return self._ask(_about("member", path, skip=(name,))).content
 
     def quiz_in(self, path: Path, loose: bytes = b"") -> Any:
-        """The quiz attempts in an archive; words if they have another form, None if it has none.
-
-        Args:
-            loose: what ``path`` holds, where that is no archive.
-        """
+        """The quiz attempts in an archive, or in ``loose``, what a file that is none holds; words if they
+        have another form, None if it has none."""
         return json.loads(self._ask(_about("quiz", path, content=loose)).content)
 
     def _ask(self, ask: _Request) -> _Reply:
         if self.spent:
-            raise RefusedError(
-                "unreadable",
-                f"{ask.name} was not read: what was handed in with it took all the time for reading.",
-                "Hand in the .py files alone.",
-            )
+            message = f"{ask.name} was not read: what was handed in with it took all the time for reading."
+            raise RefusedError("unreadable", message, "Hand in the .py files alone.")
         # Where the course lies, which need not be text, is nothing to read a file by.
         exercise = ask.exercise and msgspec.structs.replace(ask.exercise, folder="")
         ask = msgspec.structs.replace(ask, exercise=exercise, student=self._student, streamed=self._streamed)
@@ -500,18 +446,15 @@ class Reader:
             if self._student and ask.path not in self._fatal:
                 self._left_s -= self._cpu_s
                 self._fatal |= {ask.path} - {b""}
-            raise RefusedError(
-                "unreadable",
-                f"{ask.name} takes more time or memory to read than any honest file.",
-                "Hand in the .py file, or a notebook of ordinary size.",
-            )
+            message = f"{ask.name} takes more time or memory to read than any honest file."
+            advice = "Hand in the .py file, or a notebook of ordinary size."
+            raise RefusedError("unreadable", message, advice)
         told = msgspec.msgpack.decode(frame, type=_Reply)
         if self._student:
             self._left_s -= told.cpu_s
             self._streamed -= told.streamed
         if told.problem is not None:
-            problem = told.problem
-            raise RefusedError(problem.code, problem.message, problem.help)
+            raise RefusedError(*msgspec.structs.astuple(told.problem))
         return told
 
 
@@ -582,7 +525,9 @@ def _outlines(
         content = handle.read(MAX_NOTEBOOK + 1)
     kind = downloads.kind_of(path.name, content)
     if kind == "a zip archive" or path.suffix.casefold() == ".zip":
-        files = outline_of(path, skip)
+        held = _given(_held(path))
+        wanted = [name for name in held.files if held.names[name] not in skip]
+        files = [(held.names[name], _given(held.files[name])) for name in wanted]
     elif kind in _TARS:
         files = _compressed(path, kind, meter)
     else:
@@ -628,7 +573,7 @@ def _defined(
     except (ValueError, AttributeError, TypeError, RecursionError):
         return (), (), 0
     size = sum(map(len, pieces))
-    if size > MAX_CODE:
+    if size > limits.MAX_CODE:
         return (), (), 0  # nor could it be graded
     found = [node for tree in map(statements.tree, pieces) if tree for node in tree.body]
     written: dict[str, bool] = {}  # the last one of a name counts

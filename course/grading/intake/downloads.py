@@ -98,20 +98,15 @@ _SHOWN = 5
 
 @dataclass(frozen=True)
 class Place:
-    """Where a student's files are: a folder of their own, or some of the files in a shared one.
-
-    Attributes:
-        files: name the student gave -> path, where the folder is shared; None for a folder of one's own.
-    """
+    """Where a student's files are: in a folder of their own, or, as ``files`` with the names the student
+    gave, in a shared one."""
 
     root: Path
     files: tuple[tuple[str, Path], ...] | None = None
 
     def find(self, wanted: str, inside: str) -> list[Path]:
-        """Files that a name may mean, at the top or in a subfolder; none is opened.
-
-        Those with exactly that name come first.
-        """
+        """Files that a name may mean, at the top or in a subfolder, those with exactly that name first; none
+        is opened."""
         if self.files is None:
             found = _entries(self.root)
             for name, path in [*found, *([(inside, self.root / inside)] if "/" in inside else [])]:
@@ -122,11 +117,8 @@ class Place:
         return [path for _, path in sorted(mine, key=lambda item: item[0])]
 
     def unwrapped(self, known: Collection[str]) -> "Place":
-        """The folder that has everything in it, as a workspace that was handed in whole; else this place.
-
-        Args:
-            known: folders that belong there.
-        """
+        """The folder that has everything in it, as a workspace that was handed in whole, and is none of those
+        known to belong there; else this place."""
         root = self.root
         for _ in range(_WRAPPED if self.files is None else 0):
             inside = [one for one in _entries(root) if not is_clutter(one[0])]
@@ -184,12 +176,7 @@ class Student:
 
 @dataclass
 class ClassList:
-    """A class.
-
-    Attributes:
-        students: ordered by name.
-        unrecognised: files with an unknown owner, one sentence each.
-    """
+    """A class: its students, ordered by name, and a sentence about each file with an unknown owner."""
 
     layout: str
     students: list[Student] = field(default_factory=list)
@@ -199,10 +186,8 @@ class ClassList:
 def class_list(folder: Path, layout: str = "auto") -> ClassList:
     """The class in a folder.
 
-    Raises:
-        NotFoundError: there is no such folder, or it has no students.
-        UsageError: some names are a platform's and some are not; the message lists them.
-        MissingCapabilityError: reading this download needs something that is not installed.
+    NotFoundError: there is no such folder, or it has no students. UsageError: some names are a platform's
+    and some are not. MissingCapabilityError: reading this download needs something that is not installed.
     """
     if layout not in LAYOUTS:
         raise UsageError(f"--layout is {layout!r}.", help=f"It takes {', '.join(LAYOUTS)}.")
@@ -215,11 +200,8 @@ def class_list(folder: Path, layout: str = "auto") -> ClassList:
     found = readers[layout](folder, names)
     found.students.sort(key=lambda student: student.name)
     if not found.students and not found.unrecognised:
-        raise NotFoundError(
-            f"{folder} holds no submissions.",
-            help="Name the folder that holds one folder per student, or an unpacked download.",
-            code="no_submissions",
-        )
+        advice = "Name the folder that holds one folder per student, or an unpacked download."
+        raise NotFoundError(f"{folder} holds no submissions.", help=advice, code="no_submissions")
     return found
 
 
@@ -227,13 +209,10 @@ def _names(folder: Path) -> list[str]:
     try:
         found = sorted(os.listdir(os.fsencode(folder)))  # noqa: PTH208 - bytes: a name need not be text
     except OSError as error:
-        raise NotFoundError(
-            f"{folder} is not a folder of submissions: {error.strerror}.",
-            help="Unpack it, and name the folder that holds one folder per student."
-            if folder.is_file()
-            else "Name the folder that holds one folder per student.",
-            code="submissions_not_found",
-        ) from None
+        message = f"{folder} is not a folder of submissions: {error.strerror}."
+        first = "Unpack it, and name" if folder.is_file() else "Name"
+        advice = f"{first} the folder that holds one folder per student."
+        raise NotFoundError(message, help=advice, code="submissions_not_found") from None
     return [name for raw in found if (name := os.fsdecode(raw)) not in IGNORED]
 
 
@@ -242,11 +221,11 @@ def _one_too_high(folder: Path, names: list[str]) -> UsageError | None:
     inner = [folder / name for name in names if (folder / name).is_dir()]
     if len(inner) != 1 or not os.path.isfile(inner[0] / _METADATA):  # noqa: PTH113 - False where it is closed
         return None
-    return UsageError(
-        f"The one folder in {folder} has a {_METADATA}: a download from Gradescope, or a student's work.",
-        help=f"If Gradescope made it, name {str(inner[0])!r}; if a student did, choose --layout folders.",
-        code="mixed_layout",
+    message = (
+        f"The one folder in {folder} has a {_METADATA}: a download from Gradescope, or a student's work."
     )
+    advice = f"If Gradescope made it, name {str(inner[0])!r}; if a student did, choose --layout folders."
+    return UsageError(message, help=advice, code="mixed_layout")
 
 
 def _recognised(folder: Path, names: list[str]) -> str:
@@ -257,7 +236,7 @@ def _recognised(folder: Path, names: list[str]) -> str:
         layout, odd = "moodle", [name for name in folders if name not in moodle]
     elif _METADATA in names:
         layout, odd = "gradescope", [name for name in folders if not _GRADESCOPE.fullmatch(name)]
-    elif canvas and (not folders or any(map(_may_be_handed_in, canvas))):
+    elif canvas and (not folders or any(name.lower().endswith(HANDED_IN) for name in canvas)):
         layout, odd = "canvas", [name for name in names if name not in canvas]
     elif refused := _one_too_high(folder, names):
         raise refused
@@ -265,16 +244,10 @@ def _recognised(folder: Path, names: list[str]) -> str:
         return "folders"
     if odd:
         listed = some([*map(quoted, odd)], _SHOWN)
-        raise UsageError(
-            f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}.",
-            help=f"Move these elsewhere, or choose the kind: --layout folders or --layout {layout}.",
-            code="mixed_layout",
-        )
+        message = f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}."
+        advice = f"Move these elsewhere, or choose the kind: --layout folders or --layout {layout}."
+        raise UsageError(message, help=advice, code="mixed_layout")
     return layout
-
-
-def _may_be_handed_in(name: str) -> bool:
-    return name.lower().endswith(HANDED_IN)
 
 
 def _text(name: str) -> str:
@@ -288,7 +261,7 @@ def _folders(folder: Path, names: list[str]) -> ClassList:
     for raw in names:
         path = folder / raw
         if not (path.is_dir() or path.is_symlink()):
-            if _may_be_handed_in(raw):
+            if raw.lower().endswith(HANDED_IN):
                 found.unrecognised.append(f"{quoted(raw)}: is in no student's folder")
             continue  # such as a class list or notes: not a submission
         name = _text(raw)
@@ -350,19 +323,15 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
         if match["late"] or match["anon_late"]:
             late.add(key)
     for key, items in files.items():
-        if len(spelled[key]) > 1:
-            both = " and ".join(map(quoted, sorted(spelled[key])))
-            found.unrecognised.append(
-                f"user {key} of Canvas is called {both}: whose files these are is unclear"
-            )
+        name, *more = sorted(spelled[key])
+        if more:
+            both = " and ".join(map(quoted, (name, *more)))
+            said = f"user {key} of Canvas is called {both}: whose files these are is unclear"
+            found.unrecognised.append(said)
             continue
-        name = next(iter(spelled[key]))
-        identity = PlatformIdentity("canvas", key, name)
-        place = Place(folder, tuple(items))
+        who, place = PlatformIdentity("canvas", key, name), Place(folder, tuple(items))
         words = tuple(typed.get(key, ()))
-        found.students.append(
-            Student(f"{name}_{key}", place, identity, flagged_late=key in late, typed=words)
-        )
+        found.students.append(Student(f"{name}_{key}", place, who, flagged_late=key in late, typed=words))
     return found
 
 
@@ -401,13 +370,11 @@ def _metadata(path: Path) -> dict[str, Any]:
         content = yaml.load(read_bytes(path, _MAX_METADATA), loader)
     except (OSError, yaml.YAMLError, ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise UsageError(
-            f"{path} cannot be read: {reason}.", help="Download the submissions again.", code="bad_metadata"
-        ) from None
+        message, advice = f"{path} cannot be read: {reason}.", "Download the submissions again."
+        raise UsageError(message, help=advice, code="bad_metadata") from None
     if not isinstance(content, dict) or not all(isinstance(name, str) for name in content):
-        raise UsageError(
-            f"{path} is not what Gradescope writes.", help="Download it again.", code="bad_metadata"
-        )
+        message = f"{path} is not what Gradescope writes."
+        raise UsageError(message, help="Download it again.", code="bad_metadata")
     return content
 
 
@@ -428,10 +395,8 @@ def _created_at(about: Any) -> float | None:
     """The time Gradescope received it, as YAML gave it: a date, or text if the YAML had it quoted."""
     value = about.get(":created_at") if isinstance(about, dict) else None
     if isinstance(value, str):
-        try:
+        with contextlib.suppress(ValueError):
             value = dt.datetime.fromisoformat(value.strip())
-        except ValueError:
-            return None
     if not isinstance(value, dt.datetime):
         return None
     return (value if value.tzinfo else value.replace(tzinfo=dt.UTC)).timestamp()
@@ -480,18 +445,14 @@ def is_clutter(name: str) -> bool:
     return _CLUTTER.fullmatch(name) is not None
 
 
-_SLASH = re.compile("/")
-
-
 def clutter(names: Iterable[str]) -> Callable[[str], bool]:
     """Whether one of these paths lies in something that is no student's work, such as an environment."""
     environments = {name.rpartition("/")[0] for name in names if name.rpartition("/")[2] == _ENVIRONMENT}
     environments.discard("")
 
     def inside(name: str) -> bool:
-        if any(map(is_clutter, name.split("/"))):
-            return True
-        return bool(environments) and any(name[: at.start()] in environments for at in _SLASH.finditer(name))
+        above = (name[: at.start()] for at in re.finditer("/", name)) if environments else ()
+        return any(map(is_clutter, name.split("/"))) or not environments.isdisjoint(above)
 
     return inside
 
@@ -568,14 +529,11 @@ class Meter:
 
 
 def compressed(path: Path, kind: str, most: int, total: int, meter: Meter) -> Iterator[tuple[str, bytes]]:
-    """Names and contents of what may be code in a tar archive, or of the one file that was compressed.
+    """Names and contents of what may be code in a tar archive, or of the one file that was compressed;
+    larger ones than so many bytes, each or all together, are passed over.
 
-    Args:
-        most, total: bytes of a file, and of all of them; larger ones are passed over.
-
-    Raises:
-        TooMuchError: to find them takes more than the meter allows, or a path is too long.
-        OSError: it is damaged.
+    TooMuchError: to find them takes more than the meter allows, or a path is too long. OSError: it is
+    damaged.
     """
     try:
         with _OPENERS[kind](path, "rb") as meter.source:

@@ -32,7 +32,7 @@ import msgspec
 from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
-from course.grading.intake.archives import ArchiveContent, RefusedError, reader
+from course.grading.intake.archives import RefusedError, reader
 from course.grading.intake.downloads import (
     Place,
     Student,
@@ -56,7 +56,6 @@ class Entry:
     """One student and one exercise.
 
     Attributes:
-        student: the student's id.
         submission: to grade; None if there is nothing.
         problem: why there is nothing; if both are None, the exercise was not handed in.
         unread: it was not asked for, and there is work for it.
@@ -123,7 +122,7 @@ def read_student(
 def _unforeseen(error: Exception) -> Problem:
     # Students read this too: of the system's errors only the reason, which has no path in it.
     reason = (error.strerror if isinstance(error, OSError) else str(error)) or "no reason was given"
-    message = f"It cannot be read: {type(error).__name__}, {one_line(reason, _LONGEST)}."
+    message = f"It cannot be read: {type(error).__name__}, {one_line(reason, 200)}."
     return Problem("unreadable", message, "Look at it; `course grade assign` takes any file by its path.")
 
 
@@ -131,50 +130,42 @@ def _entries(
     student: Student, exercises: Sequence[Exercise], *, required: bool, others: Sequence[Exercise] | None
 ) -> Iterator[Entry]:
     name, place = student.name, student.place
+    every = (*exercises, *(others or ()))
     try:
         if place.files is None and place.root.is_symlink():
             raise RefusedError("symlink", "The student's folder is a link.", "Hand in the folder itself.")
-        place = place.unwrapped({exercise.place for exercise in (*exercises, *(others or ()))})
+        place = place.unwrapped({exercise.place for exercise in every})
         above = quoted(str(place.root.relative_to(student.place.root)))
-        around = (
-            []
-            if place is student.place
-            else [f"Everything lies in the folder {above}, which was passed over."]
-        )
+        around = [f"Everything lies in the folder {above}, which was passed over."]
+        around = around if place is not student.place else []
         archives = place.archives()
-    except RefusedError as refused:
-        for exercise in exercises:
-            yield Entry(name, exercise, problem=refused.problem)
-        return
-    except OSError as error:
-        message = f"The student's folder cannot be read: {error.strerror}."
-        for exercise in exercises:
-            yield Entry(name, exercise, problem=Problem("unreadable", message, _PERMISSIONS))
+    except (RefusedError, OSError) as error:
+        if isinstance(error, RefusedError):
+            problem = error.problem
+        else:
+            message = f"The student's folder cannot be read: {error.strerror}."
+            problem = Problem("unreadable", message, _PERMISSIONS)
+        yield from (Entry(name, exercise, problem=problem) for exercise in exercises)
         return
     taken = [(exercise, _found(place, archives, exercise)) for exercise in exercises]
     used = {at for _, item in taken if isinstance(item, _FoundWork) for at in item.used}
-    every = (*exercises, *(others or ()))
     left = survey(place, used, every)
     mine = _meant(left, every) if others is not None else dict.fromkeys((one.id for one in every), left)
     alone = not used and any("archive" in one.kind for one in left)
     busy = others is not None and bool(used or left or archives or place.find(MANIFEST, "."))
     for exercise, item in taken:
-        if isinstance(item, _FoundWork):
-            if (problem := _stub_beside(exercise, item, mine[exercise.id])) is not None:
-                yield _without(
-                    student, exercise, problem, mine[exercise.id],
-                    required=required, busy=busy, tidy=True, alone=False,
-                )  # fmt: skip
-                continue
+        there = mine[exercise.id]
+        tidy = others is not None and bool(used or len(there) < len(left))
+        refused = _stub_beside(exercise, item, there) if isinstance(item, _FoundWork) else item
+        if isinstance(item, _FoundWork) and refused is None:
             times = witnesses(student, exercise.id, item.submission.sha256, item.path)
-            notes = (*around, *item.notes, *_beside(exercise, item, mine[exercise.id]))
+            notes = (*around, *item.notes, *_beside(exercise, item, there))
             yield Entry(name, exercise, item.submission, times=times, notes=notes, written=item.written)
-        else:
-            there = mine[exercise.id]
-            tidy = others is not None and bool(used or len(there) < len(left))
-            yield _without(
-                student, exercise, item, there, required=required, busy=busy, tidy=tidy, alone=alone
-            )
+            continue
+        tidy = tidy or isinstance(item, _FoundWork)
+        yield _without(
+            student, exercise, refused, there, required=required, busy=busy, tidy=tidy, alone=alone
+        )
     for exercise in others or ():
         if found_for(exercise, mine[exercise.id], asked=()):
             yield Entry(name, exercise, unread=True)
@@ -200,28 +191,19 @@ def _meant(left: list[Candidate], every: Sequence[Exercise]) -> dict[str, list[C
     for one in left:
         name = Path(one.name).name
         has = {item.id: {task.id for task in item.task}.intersection(one.defines) for item in every}
-        called = {
-            item.id
-            for item in every
-            if any(
-                is_meant(name, wanted)
-                for wanted in (item.module, str(Path(item.module).with_suffix(".ipynb")))
-            )
-        }
+        names = {item.id: (item.module, str(Path(item.module).with_suffix(".ipynb"))) for item in every}
+        called = {id_ for id_, wanted in names.items() if any(is_meant(name, one) for one in wanted)}
         for id_, mine in has.items():
-            others = ((other, theirs) for other, theirs in has.items() if other != id_)
-            if not any(
-                (theirs and not mine) or (other in called and theirs >= mine) for other, theirs in others
-            ):
+            others = [(other in called, theirs) for other, theirs in has.items() if other != id_]
+            if not any((theirs and not mine) or (by_name and theirs >= mine) for by_name, theirs in others):
                 meant[id_].append(one)
     return meant
 
 
 def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
     """Other files with functions of the same exercise; they are always reported."""
-    others = [
-        one for one in found_for(exercise, left, asked=()) if one.defines and one.sha256 not in taken.contents
-    ]
+    found = found_for(exercise, left, asked=())
+    others = [one for one in found if one.defines and one.sha256 not in taken.contents]
     return [f"Also there, and not graded: {described(others)}."] if others else []
 
 
@@ -302,9 +284,6 @@ def witnesses(student: Student, exercise: str, sha256: str, path: Path | None) -
 
 
 _PERMISSIONS = "Check the permissions of the file and of the folders above it."
-_LONGEST = 200
-
-
 #: Problems that a file under another name, in another encoding, or a choice between files, would solve.
 _FOR_TRIAGE = {"no_file", "ambiguous_files", "refused_archive", "syntax_error"}
 
@@ -315,23 +294,15 @@ def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str,
         message += f" There is {described(found)}."
     if typed:
         message += f" The text typed into the platform is not a file: {some([*map(quoted, typed)], _SHOWN)}."
-    return Problem(
-        "no_file",
-        message,
-        f"It is to be handed in as {exercise.module} or {exercise.id}/{exercise.module}, or as the zip that"
-        " `course submit` writes.",
-    )
+    names = f"{exercise.module} or {exercise.id}/{exercise.module}"
+    advice = f"It is to be handed in as {names}, or as the zip that `course submit` writes."
+    return Problem("no_file", message, advice)
 
 
 @dataclass(frozen=True)
 class _FoundWork:
-    """The file that was found for an exercise by its name.
-
-    Attributes:
-        path: the file it came in.
-        used: paths, and members of archives, that hold it.
-        contents: digests of the files, unchanged.
-    """
+    """The file that was found for an exercise by its name: where it came in, all paths, and members of
+    archives, that hold it, and the digests of the files, unchanged."""
 
     submission: Submission
     path: Path
@@ -346,19 +317,15 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork 
     notebook = Path(exercise.module).with_suffix(".ipynb").name
     plain = place.find(exercise.module, exercise.place)
     notebooks = place.find(notebook, exercise.place)
-    packed: list[tuple[Path, ArchiveContent]] = []
-    for archive in archives:
-        held = reader.module_in(archive, exercise)
-        if held is not None:
-            packed.append((archive, held))
+    opened = [(archive, reader.module_in(archive, exercise)) for archive in archives]
+    packed = [(archive, held) for archive, held in opened if held is not None]
     files = [*plain, *notebooks]
     candidates = [*files, *(archive for archive, _ in packed)]
     if not candidates:
         return None
     names = some([place.shown(path) for path in candidates], _SHOWN)
-    several = RefusedError(
-        "ambiguous_files", f"There are several files for {exercise.id}: {names}.", "Keep the one that counts."
-    )
+    message = f"There are several files for {exercise.id}: {names}."
+    several = RefusedError("ambiguous_files", message, "Keep the one that counts.")
     try:
         contents = [_content(place, path, exercise, notebook=path in notebooks) for path in files]
     except RefusedError as refused:
@@ -410,9 +377,8 @@ def _content(place: Place, path: Path, exercise: Exercise, *, notebook: bool) ->
         return held.content
     if kind in {"", "a notebook", "an empty file", "no text"}:
         return _within(content, shown, MAX_NOTEBOOK if notebook or kind == "a notebook" else MAX_FILE)
-    raise RefusedError(
-        "no_code", f"{shown} is {kind}, whatever its name says.", "Hand in the .py file itself."
-    )
+    message = f"{shown} is {kind}, whatever its name says."
+    raise RefusedError("no_code", message, "Hand in the .py file itself.")
 
 
 def _unlike_its_name(path: Path) -> list[str]:
@@ -426,32 +392,23 @@ _TAKEN_AS = frozenset({"a notebook", "a zip archive"})
 
 
 def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submission:
-    """A file that an instructor named as a submission, whatever its name.
-
-    Args:
-        member: name in the archive at ``path``; empty for the file itself.
-    """
+    """A file that an instructor named as a submission, whatever its name, or a member of an archive."""
     content = reader.member(path, member) if member else _read_regular(path, quoted(path.name), MAX_NOTEBOOK)
     notebook = (member or path.name).casefold().endswith(".ipynb") or is_notebook(content)
     _within(content, quoted(path.name), MAX_NOTEBOOK if notebook else MAX_FILE)
     kind = kind_of(member or path.name, content)
     if not notebook and kind not in {"", "a text", "an empty file", "no text"}:
         message = f"{quoted(member or path.name)} cannot be graded: it is {kind}."
-        raise RefusedError(
-            "no_code", message, "Name a .py file or a notebook; a path into an archive has a slash."
-        )
-    return _submission(
-        exercise, "named.ipynb" if notebook else "named.py", content if notebook else in_utf8(content)
-    )
+        advice = "Name a .py file or a notebook; a path into an archive has a slash."
+        raise RefusedError("no_code", message, advice)
+    if notebook:
+        return _submission(exercise, "named.ipynb", content)
+    return _submission(exercise, "named.py", in_utf8(content))
 
 
 def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
-    """A file as a submission; a notebook becomes the module that it makes up.
-
-    Raises:
-        RefusedError: it is empty, in an encoding that Python does not expect, or a notebook that cannot be
-            graded.
-    """
+    """A file as a submission; a notebook becomes the module that it makes up. It is refused if it is
+    empty, in an encoding that Python does not expect, or a notebook that cannot be graded."""
     called = name.rpartition("/")[2]
     shown = quoted(called)
     if not content.strip():
@@ -497,16 +454,12 @@ def _within(content: bytes, shown: str, limit: int) -> bytes:
 def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | None]:
     """A student's quiz attempts, as in the JSON, and the file they came in; an empty list if none.
 
-    An archive that cannot be read gives none: the exercises in it report what is wrong with it.
-
-    Args:
-        alone: no exercise is read that could.
-
-    Raises:
-        UngradableError: several files hold different attempts, or a file that may hold some was not read.
+    An archive that cannot be read gives none: the exercises in it report what is wrong with it, unless
+    this is read ``alone``. UngradableError: several files hold different attempts, or a file that may hold
+    some was not read.
     """
     found: list[tuple[Any, Path]] = []
-    unread: Problem | None = None
+    unread: RefusedError | None = None
     place = student.place
     reader.turn_to(student)
     with contextlib.suppress(OSError):
@@ -520,15 +473,14 @@ def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | Non
                 record = reader.quiz_in(path, loose)
                 found += [(record, path)] if record else []
             except RefusedError as refused:
-                unread = refused.problem if alone or reader.spent else unread
+                unread = refused if alone or reader.spent else unread
     # A damaged record takes nothing from one that can be read.
     found = [one for one in found if not isinstance(one[0], str)] or found
     if any(record != found[0][0] for record, _ in found):
-        raise UngradableError(
-            "Several files hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"
-        )
+        message = "Several files hold quiz attempts."
+        raise UngradableError(message, help="Keep the one that counts.", code="ambiguous_files")
     if unread and not found:
-        raise UngradableError(unread.message, help=unread.help, code=unread.code)
+        raise unread
     return found[0] if found else ([], None)
 
 
@@ -570,12 +522,8 @@ class Candidate(msgspec.Struct, frozen=True):
 
 
 class Found(msgspec.Struct, frozen=True):
-    """The files of one student that may be meant for an exercise, but not by their names.
-
-    Attributes:
-        reason: the code of the problem.
-        times: who says when it was handed in, and when.
-    """
+    """The files of one student that may be meant for an exercise, but not by their names, the code of the
+    problem, and who says when they were handed in."""
 
     reason: str
     candidates: tuple[Candidate, ...]
@@ -583,12 +531,7 @@ class Found(msgspec.Struct, frozen=True):
 
 
 def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercise]) -> list[Candidate]:
-    """A student's files that no exercise was graded from.
-
-    Args:
-        used: path and member of the graded ones.
-        exercises: look for their functions.
-    """
+    """A student's files that no exercise was graded from, with those of the functions that they define."""
     functions = tuple(dict.fromkeys(task.id for exercise in exercises for task in exercise.task))
     candidates: list[Candidate] = []
     left = _CODE
@@ -642,30 +585,21 @@ def _outlined(
         killed = refused.problem.code == "unreadable"
         why = refused.problem.message.removeprefix(f"{quoted(path.name)}: ").rstrip(".")
         return [Candidate(shown, os.fsencode(path), sha256="" if killed else shown, kind=why)], 0
-    candidates = [
-        Candidate(
-            f"{shown}/{one_line(member)}" if member else shown,
-            os.fsencode(path),
-            member,
-            sha256,
-            defines,
-            kind=kind,
-            written=written,
-        )
-        for member, sha256, defines, written, _, kind in outlines
-    ]
+    candidates = []
+    for member, sha256, defines, written, _, kind in outlines:
+        inside = f"{shown}/{one_line(member)}" if member else shown
+        about = (inside, os.fsencode(path), member, sha256, defines)
+        candidates.append(Candidate(*about, kind=kind, written=written))
     return candidates, sum(parsed for *_, parsed, _ in outlines)
 
 
 def found_for(
     exercise: Exercise, candidates: Iterable[Candidate], *, asked: Collection[Candidate]
 ) -> tuple[Candidate, ...]:
-    """The files that may be meant for an exercise, the likeliest first, with the one match if there is one.
+    """The files that may be meant for an exercise, those ``asked`` for whatever they are called, the
+    likeliest first, with the one match if there is one.
 
     The one in which most functions are written is the match; names decide only where no file has any.
-
-    Args:
-        asked: files that may be meant for it whatever they are called.
     """
     tasks = [task.id for task in exercise.task]
     stem = Path(exercise.module).stem.casefold()
@@ -679,19 +613,16 @@ def found_for(
             # What cannot be read as code can be named, and not proposed.
             worth, alike = (len(written), alike + 0.1 * bool(mine)) if one.kind in _READABLE else (0, 0.0)
             ranked.append((worth, alike, msgspec.structs.replace(one, defines=mine, written=written)))
-    handed_in = HANDED_IN
     ranked.sort(
-        key=lambda item: (-item[0], -item[1], not item[2].name.casefold().endswith(handed_in), item[2].name)
+        key=lambda item: (-item[0], -item[1], not item[2].name.casefold().endswith(HANDED_IN), item[2].name)
     )
     most = ranked[0][0] if ranked else 0
     distinct = {item[2].sha256: item[0] or item[1] for item in reversed(ranked)}
     best = most or max(distinct.values(), default=0.0)
     # Two equally good files that differ: the grader must not decide which one counts.
     clear = best > 0 and list(distinct.values()).count(best) == 1
-    return tuple(
-        msgspec.structs.replace(one, proposed=clear and number == 0)
-        for number, (_, _, one) in enumerate(ranked)
-    )
+    found = [one for *_, one in ranked]
+    return tuple(msgspec.structs.replace(one, proposed=clear and one is found[0]) for one in found)
 
 
 def described(candidates: Sequence[Candidate]) -> str:

@@ -69,7 +69,6 @@ class Effective:
         submitted_at: seconds since 1970, UTC, by the most trusted witness; None if there is none.
         witness: the source of that time.
         flagged_late: the download says "late" but not by how much.
-        override: the instructor's decision, if any.
     """
 
     result: Result
@@ -125,7 +124,6 @@ class Results:
 
     Attributes:
         seed: of the run's hidden inputs.
-        policy: the late policy in force, if any.
         waiting: students whose work a run has still to look at.
         looked: by exercise, whose work was looked at; None if that was not noted.
 
@@ -158,14 +156,7 @@ class Results:
 
     @classmethod
     def open(cls, out: Path) -> Self:
-        """The results in the folder of a grading run; close ``book`` when done.
-
-        Raises:
-            NotFoundError: there is no gradebook.
-            UsageError: a run is writing it.
-            MissingCapabilityError: a newer version wrote it.
-            IntegrityError: it is damaged.
-        """
+        """The results in the folder of a run, opened as a ``Gradebook`` is; close ``book`` when done."""
         return cls(Gradebook(out / "gradebook.sqlite"))
 
     def take_in(self, times: Iterable[SubmittedAt]) -> None:
@@ -210,11 +201,7 @@ class Results:
 
     def called(self, name: str) -> str:
         """The student who is called so: a name in the gradebook, or what the roster knows about one alone.
-
-        Anything else is given back as it is, for whoever asks to refuse.
-
-        Raises:
-            NotFoundError: several students are called so.
+        Several are refused (NotFoundError); anything else is given back as it is, for whoever asks to refuse.
         """
         students = self.students()
         if name in students:
@@ -240,11 +227,7 @@ class Results:
         return one_line(student) + (f" ({known})" if known else "")
 
     def verify(self) -> None:
-        """Read every row there is, so that a damaged gradebook answers nothing.
-
-        Raises:
-            IntegrityError: something is not what was written.
-        """
+        """Read every row there is, so that a damaged gradebook answers nothing but an IntegrityError."""
         self.book.verify()
         for _ in self.all():
             pass
@@ -439,11 +422,7 @@ def moved(before: Scores, after: Scores) -> list[ScoreChange]:
 
 @contextlib.contextmanager
 def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[list[ScoreChange]]:
-    """Record which scores the decision in this block changed; they are in the list after it.
-
-    Args:
-        kind: as in ``Decision``.
-    """
+    """Record which scores the decision in this block changed; they are in the list after it."""
     told: list[ScoreChange] = []
     before = counting(Results(book))
     yield told
@@ -468,11 +447,7 @@ def replacing(book: Gradebook, view: Results, key: Key) -> Iterator[None]:
 
 
 def counted(counts: Effective | None, file: str = "") -> str:
-    """What counts for a student's exercise, as a decision about it keeps it.
-
-    Args:
-        file: the file that the instructor chose, if any.
-    """
+    """What counts for a student's exercise, with the file that the instructor chose, as a decision has it."""
     if counts is None:
         return msgspec.json.encode({"state": "missing", "score": None}).decode()
     told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score, "of": counts.max_score}
@@ -504,23 +479,16 @@ _MAX_REASON = 2000
 
 
 def override(results: Results, student: str, exercise: str, score: float, reason: str) -> Effective:
-    """Set a score and store the reason; earlier decisions stay in the gradebook.
+    """Set a score, from 0 to the exercise's maximum, and store the reason; earlier decisions stay in the
+    gradebook.
 
-    Args:
-        results: over a gradebook opened for writing.
-        score: points, from 0 to the exercise's maximum.
-
-    Raises:
-        NotFoundError: the gradebook knows no such student or exercise.
-        UsageError: no such score is possible, or there is no reason.
+    NotFoundError: the gradebook knows no such student or exercise. UsageError: no such score is possible,
+    or there is no reason.
     """
     most = _maximum(results, student, exercise)
     if not math.isfinite(score) or not 0 <= score <= most:
-        raise UsageError(
-            f"--score is {score:g}; {exercise} has 0 to {most:g} points.",
-            help="Give the points that are to count.",
-            code="impossible_score",
-        )
+        message = f"--score is {score:g}; {exercise} has 0 to {most:g} points."
+        raise UsageError(message, help="Give the points that are to count.", code="impossible_score")
     reason = given_reason(reason, "An override", "it is shown wherever the score is")
     before = _told(next(results.all(student, exercise), None))
     results.book.add_override(Override(student, exercise, float(score) + 0.0, reason), before)
@@ -528,36 +496,22 @@ def override(results: Results, student: str, exercise: str, score: float, reason
 
 
 def given_reason(reason: str, what: str, shown: str) -> str:
-    """An instructor's reason for a decision.
-
-    Raises:
-        UsageError: there is none, or it is too long.
-    """
+    """An instructor's reason for a decision; a UsageError if there is none, or it is too long."""
     reason = reason.strip()
     if not reason or len(reason) > _MAX_REASON:
-        raise UsageError(
-            f"{what} needs a reason of at most {_MAX_REASON} characters.",
-            help=f"Add --reason: {shown}.",
-            code="no_reason",
-        )
+        message = f"{what} needs a reason of at most {_MAX_REASON} characters."
+        raise UsageError(message, help=f"Add --reason: {shown}.", code="no_reason")
     return reason
 
 
 def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
-    """Let the graders' result count again; None if there is none.
-
-    Raises:
-        NotFoundError: there is no override to lift.
-    """
+    """Let the graders' result count again; None if there is none. NotFoundError if it counts already."""
     _maximum(results, student, exercise)
     found = next(results.all(student, exercise), None)
     if found is None or found.override is None:
         explain = command("grade", "explain", results.folder, student, exercise)
-        raise NotFoundError(
-            f"There is no override for {student!r} and {exercise}.",
-            help=f"{explain} shows what counts.",
-            code="no_override",
-        )
+        message = f"There is no override for {student!r} and {exercise}."
+        raise NotFoundError(message, help=f"{explain} shows what counts.", code="no_override")
     results.book.add_override(Override(student, exercise, None, reason.strip()), _told(found))
     return next(Results(results.book).all(student, exercise), None)
 
@@ -571,45 +525,31 @@ def _told(counts: Effective | None) -> str:
 
 def no_exercise(exercise: str, known: Sequence[str]) -> NotFoundError:
     """What is said of an exercise that a gradebook does not have."""
-    return NotFoundError(
-        f"The gradebook has no exercise {exercise!r}.",
-        help=f"It has {', '.join(known) or 'none'}.",
-        code="exercise_not_found",
-    )
+    message = f"The gradebook has no exercise {exercise!r}."
+    return NotFoundError(message, help=f"It has {', '.join(known) or 'none'}.", code="exercise_not_found")
 
 
 def _only(students: Sequence[str], name: str) -> str:
     if len(students) > 1:
-        raise NotFoundError(
-            f"{len(students)} students are called {name!r}.",
-            help=f"The gradebook calls them {some([one_line(one) for one in students], 4)}: name one.",
-            code="student_not_found",
-        )
+        message = f"{len(students)} students are called {name!r}."
+        advice = f"The gradebook calls them {some([one_line(one) for one in students], 4)}: name one."
+        raise NotFoundError(message, help=advice, code="student_not_found")
     return students[0] if students else name
 
 
 def must_have(results: Results, student: str) -> None:
-    """Refuse a name that is no student's.
-
-    Raises:
-        NotFoundError: the gradebook has no such student.
-    """
+    """Refuse a name that is no student's of the gradebook (NotFoundError)."""
     if student not in results.students():
-        raise NotFoundError(
-            f"The gradebook has no student {student!r}.",
-            help="grades.csv lists all, and with a roster everybody who is enrolled.",
-            code="student_not_found",
-        )
+        message = f"The gradebook has no student {student!r}."
+        advice = "grades.csv lists all, and with a roster everybody who is enrolled."
+        raise NotFoundError(message, help=advice, code="student_not_found")
 
 
 def _maximum(results: Results, student: str, exercise: str) -> float:
     """The exercise's maximum; also checks that student and exercise exist."""
     graded = next(results.book.results(student, exercise), None)
-    noted = next((item for item in results.exercises() if item.id == exercise), None)
-    if graded is None and noted is None:
-        raise no_exercise(exercise, [item.id for item in results.exercises()])
+    most = {item.id: item.max_points for item in results.exercises()}
+    if graded is None and exercise not in most:
+        raise no_exercise(exercise, list(most))
     must_have(results, student)
-    if noted is not None:
-        return noted.max_points
-    assert graded is not None
-    return graded.verdict.max_score
+    return most[exercise] if exercise in most or graded is None else graded.verdict.max_score

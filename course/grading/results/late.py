@@ -85,21 +85,14 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     trust: tuple[Source, ...] = ("list", "gradescope")
 
     def due(self, exercise: str, student_names: tuple[str, ...], granted_days: float = 0.0) -> float | None:
-        """When it is due for this student, in seconds since 1970; None if the policy does not say.
-
-        Args:
-            student_names: every id the student goes by.
-            granted_days: more time from elsewhere (the roster); the longest extension counts.
-        """
+        """When it is due for this student, by every name, in seconds since 1970; None if the policy does
+        not say. ``granted_days`` are more time from the roster; the longest extension counts."""
         exact = [item for item in self.deadline if item.exercise == exercise]
         found = exact or [item for item in self.deadline if item.exercise == "*"]
         if not found:
             return None
-        days = [
-            item.days
-            for item in self.extension
-            if item.student in student_names and item.exercise in {"*", exercise}
-        ]
+        mine = (item for item in self.extension if item.student in student_names)
+        days = (item.days for item in mine if item.exercise in {"*", exercise})
         return found[0].due.timestamp() + _DAY_S * max([granted_days, *days])
 
     def penalty(self, late_s: float | None, score: float, maximum: float) -> float:
@@ -129,12 +122,7 @@ def may_change(first: float, last: float) -> bool:
 
 
 def read_policy(path: Path) -> tuple[Policy, str]:
-    """A policy, and its text for the gradebook.
-
-    Raises:
-        UsageError: the file cannot be read, or is not a policy.
-        MissingCapabilityError: it is in a newer format.
-    """
+    """A policy, read as ``parse_policy`` does, and its text for the gradebook."""
     try:
         text = read_bytes(path).decode("utf-8-sig")
     except (OSError, UnicodeError) as error:
@@ -144,18 +132,13 @@ def read_policy(path: Path) -> tuple[Policy, str]:
 
 
 def parse_policy(text: str, name: str = "The late policy") -> Policy:
-    """A policy from its text.
-
-    Raises:
-        UsageError: it is not a policy; the message names the place.
-        MissingCapabilityError: it is in a newer format.
-    """
+    """A policy from its text; UsageError if it is none, which names the place, MissingCapabilityError if
+    it is in a newer format."""
     with contextlib.suppress(tomllib.TOMLDecodeError):
         version = toml(text).get("format_version")
         if isinstance(version, int) and version > FORMAT_VERSION:
-            raise MissingCapabilityError(
-                f"{name} is in a newer format ({version}).", help="Update the course.", code="newer_format"
-            )
+            message = f"{name} is in a newer format ({version})."
+            raise MissingCapabilityError(message, help="Update the course.", code="newer_format")
     try:
         document = read_document(Path(name), Policy, text=text)
         _check(document)
@@ -226,12 +209,8 @@ class Worksheet:
 
 
 def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
-    """Read such a list, or a worksheet of Moodle's.
-
-    Raises:
-        UsageError: it cannot be read, is not such a list, or has two times for the same work; the message
-            names the line.
-    """
+    """Such a list, or a worksheet of Moodle's; UsageError if it cannot be read, is neither, or has two times
+    for the same work."""
     try:
         text = decoded(read_bytes(path))
     except (OSError, UnicodeError) as error:
@@ -266,24 +245,16 @@ def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
 
 def _once(path: Path, lines: dict[tuple[str, ...], int], line: int, *work: str) -> None:
     """Refuse a second time for the same work: nobody said which counts."""
-    if lines.setdefault(work, line) != line:
-        raise _wrong_times(
-            path, f"{' '.join(map(repr, work))} is in two rows, on lines {lines[work]} and {line}"
-        )
+    if (first := lines.setdefault(work, line)) != line:
+        named = " ".join(map(repr, work))
+        raise _wrong_times(path, f"{named} is in two rows, on lines {first} and {line}")
 
 
 def worksheet_times(
     sheet: Worksheet, students: Mapping[str, str], exercise: str, zone: dt.tzinfo
 ) -> list[SubmittedAt]:
-    """The times of a worksheet.
-
-    Args:
-        students: participant's number -> student.
-        zone: that of the deadline: Moodle writes none.
-
-    Raises:
-        UsageError: a time cannot be read.
-    """
+    """The times of a worksheet, by participant's number, in the zone of the deadline, as Moodle writes
+    none; a UsageError if one cannot be read."""
     found = []
     for key, words in sheet.times.items():
         if key in students:
@@ -305,9 +276,8 @@ def _in_words(path: Path, words: str) -> dt.datetime:
         day = int(found["day"] or found["us_day"])
         return dt.datetime(int(found["year"]), month, day, hour, int(found["minute"]))
     except ValueError:
-        raise _wrong_times(
-            path, f"{words!r} is not a time as Moodle writes one in English or German"
-        ) from None
+        why = f"{words!r} is not a time as Moodle writes one in English or German"
+        raise _wrong_times(path, why) from None
 
 
 def _seconds(path: Path, line: int, text: str) -> float:
@@ -321,8 +291,5 @@ def _seconds(path: Path, line: int, text: str) -> float:
 
 
 def _wrong_times(path: Path, why: str) -> UsageError:
-    return UsageError(
-        f"{path}: {why}.",
-        help="It is a CSV file: student, exercise, submitted_at, as in 2026-12-01T23:59:00+01:00.",
-        code="invalid_times",
-    )
+    advice = "It is a CSV file: student, exercise, submitted_at, as in 2026-12-01T23:59:00+01:00."
+    return UsageError(f"{path}: {why}.", help=advice, code="invalid_times")

@@ -21,12 +21,7 @@ _IDS = ("canvas_id", "sis_user_id", "moodle_key", "login", "email")
 
 @dataclass
 class Merged:
-    """A roster that took the place of another.
-
-    Attributes:
-        dropped: students of the earlier roster that the new file does not have.
-        moved: the scores that it changes.
-    """
+    """A roster that took another's place, the students it does not have, and the scores that it changes."""
 
     roster: Roster
     dropped: list[str] = field(default_factory=list)
@@ -36,9 +31,8 @@ class Merged:
 def merged(results: Results, new: Roster, *, lasting: bool = False) -> Merged:
     """The new roster, completed from the one of the results.
 
-    Args:
-        lasting: it is to be stored. A Moodle worksheet's numbers are those of one assignment, and do not take
-            the place of what a student is known by in Moodle.
+    ``lasting``: it is to be stored. A Moodle worksheet's numbers are those of one assignment, and do not
+    take the place of what a student is known by in Moodle.
     """
     old, graded = results.roster, results.present()
     if old is None:
@@ -100,12 +94,8 @@ def _pairs(old: Roster, stages: list[Stage]) -> Iterator[tuple[str, Person]]:
 def _called(
     before: Person, row: Person, results: Results, graded: set[str], *, own: bool, known: bool
 ) -> str:
-    """The name of a student's work: a platform's file makes one up, a roster of your own gives it.
-
-    Args:
-        own: whether the row is from a roster of your own.
-        known: whether the gradebook has work of this student that the earlier row was about.
-    """
+    """The name of a student's work: a platform's file makes one up, a roster of your own gives it. ``known``:
+    there is work of this student that the earlier row was about."""
     if row.student in graded and (own or not known):
         return row.student
     by_name = before.student in graded and before.student not in results.downloads

@@ -101,15 +101,9 @@ class Column:
 
 @dataclass
 class Roster:
-    """A class list.
-
-    Attributes:
-        people: the rows, in the order of the file.
-        file: where it was read; empty if it is the one in a gradebook.
-        headings: of that file, if it is known.
-        columns: the heading of each of our columns that it has.
-        assignments: the columns of Canvas' gradebook, by the id of the assignment.
-    """
+    """A class list: the rows, in the order of the file; the file and its headings, if it is not the one in
+    a gradebook; the heading of each of our columns that it has; and the columns of Canvas' gradebook, by
+    the id of the assignment."""
 
     people: tuple[Person, ...]
     file: str = ""
@@ -225,11 +219,7 @@ def _key(column: str, value: str) -> str:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a roster.
-
-    Raises:
-        UsageError: it cannot be read or is not a roster; the message names the row.
-    """
+    """Read a roster; a UsageError that names the row if it is none."""
     reader = csv_reader(read_text(path))
     try:
         headings = headings_of(reader)
@@ -237,7 +227,12 @@ def read_roster(path: Path) -> Roster:
         if "student" in lower and set(lower) <= set(COLUMNS):
             reader.fieldnames = headings = lower
         kind, columns = _kind(path, headings)
-        rows = [_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values()))]
+        # A row of blanks is none.
+        rows = [
+            _cells(path, reader.line_num, row)
+            for row in reader
+            if any(cell.strip() if isinstance(cell, str) else cell for cell in row.values())
+        ]
     except csv.Error as error:
         raise _wrong(path, f"line {reader.line_num + 1}: {error}") from None
     found = [(person, line) for row, line in rows if (person := kind(path, line, row)) is not None]
@@ -296,19 +291,14 @@ def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
         raise _wrong(path, "its first row is empty")
     if "student" not in found:
         listed = one_line(", ".join(headings))
-        raise _wrong(
-            path, f"its first row has no heading 'student', and {listed} are not those of a platform's file"
-        )
+        why = f"its first row has no heading 'student', and {listed} are not those of a platform's file"
+        raise _wrong(path, why)
     if len(found) < len(headings):
         raise _wrong(path, "two columns have one heading")
     unknown = sorted(found - set(COLUMNS))
     if unknown:
         raise _wrong(path, f"the heading {unknown[0]!r} is not one of {', '.join(COLUMNS)}")
     return _from_ours, {name: name for name in COLUMNS}
-
-
-def _some(value: object) -> bool:
-    return bool(value.strip()) if isinstance(value, str) else bool(value)
 
 
 def _cells(path: Path, line: int, row: dict[str, str | None]) -> tuple[dict[str, str], int]:
@@ -362,9 +352,8 @@ def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, C
     for heading in headings:
         if id_ := re.search(r"\(([0-9]+)\)$", heading):
             cells = [(row["ID"], row[heading]) for row in rows]
-            points = [
-                float(cell.replace(",", ".")) for key, cell in cells if not key and _POINTS.fullmatch(cell)
-            ]
+            most = (cell.replace(",", ".") for key, cell in cells if not key and _POINTS.fullmatch(cell))
+            points = [float(cell) for cell in most]
             theirs = {key: cell for key, cell in cells if key and cell}
             found[id_[1]] = Column(heading, points[0] if points else None, theirs)
     return found
@@ -409,9 +398,8 @@ def _check_unique(path: Path, people: list[tuple[Person, int]]) -> None:
 
 
 def _wrong(path: Path, why: str) -> UsageError:
-    return UsageError(
-        f"{path}: {why}.",
-        help="A roster is what Canvas, Moodle or Gradescope hand out, unchanged, or a CSV file with the "
-        f"columns {', '.join(COLUMNS)}; all but the first are optional.",
-        code="invalid_roster",
+    advice = (
+        "A roster is what Canvas, Moodle or Gradescope hand out, unchanged, or a CSV file with the "
+        f"columns {', '.join(COLUMNS)}; all but the first are optional."
     )
+    return UsageError(f"{path}: {why}.", help=advice, code="invalid_roster")

@@ -12,16 +12,15 @@ from pathlib import Path
 import msgspec
 
 from course.catalog.load import Catalog
-from course.errors import CourseError, NotFoundError, UngradableError, UsageError
+from course.errors import CourseError, NotFoundError, UsageError
 from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
-from course.grading.intake.archives import RefusedError
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Candidate, Entry, Found, submission_from
 from course.grading.results.effective import Effective, Results, counted, given_reason, must_have, no_exercise
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.run import GradeAll
-from course.grading.running.snapshot import Unpacked, fresh, frozen, kept
+from course.grading.running.snapshot import fresh, frozen, kept
 from course.printable import command, quoted
 from course.scoring.judging.submission import Terms
 
@@ -38,12 +37,7 @@ class Unsettled:
 
 @dataclass(frozen=True)
 class Assignment:
-    """A file to be assigned to a student.
-
-    Attributes:
-        name: of the file as it was handed in.
-        member: in the archive at ``path``; empty for the file itself.
-    """
+    """A file to be assigned to a student, by its name as it was handed in; or a member of an archive."""
 
     student: str
     exercise: str
@@ -85,31 +79,23 @@ def proposals(results: Results) -> list[Assignment]:
 def named(results: Results, student: str, file: str, exercise: str | None) -> Assignment:
     """The assignment that an instructor means.
 
-    Args:
-        file: a name in the list of unsettled cases or in the student's folder, or a path; a slash leads
-            into an archive.
-        exercise: None where the unsettled case has one, or the course has only one.
-
-    Raises:
-        NotFoundError: no such student, exercise or file.
-        UsageError: the exercise is not clear.
+    The file is a name in the list of unsettled cases or in the student's folder, or a path; a slash leads
+    into an archive. The exercise need not be said where the unsettled case has one, or the course has only
+    one. NotFoundError: no such student, exercise or file. UsageError: the exercise is not clear.
     """
     student = results.called(student)
     must_have(results, student)
     mine = [item for item in unsettled(results) if item.student == student]
     known = [item.id for item in results.exercises() if item.id != "quiz"]
     if exercise is None:
-        having = [item for item in mine if any(one.name == file for one in item.found.candidates)] or mine
-        proposing = [
-            item for item in having if any(one.name == file and one.proposed for one in item.found.candidates)
-        ]
+        called = [(item, one) for item in mine for one in item.found.candidates if one.name == file]
+        having = [item for item, _ in called] or mine
+        proposing = [item for item, one in called if one.proposed]
         names = {item.exercise for item in proposing or having} or set(known)
         if len(names) != 1:
-            raise UsageError(
-                f"Which exercise {file} is for does not follow.",
-                help=f"Add --exercise, one of {', '.join(sorted(names))}.",
-                code="needs_exercise",
-            )
+            message = f"Which exercise {file} is for does not follow."
+            advice = f"Add --exercise, one of {', '.join(sorted(names))}."
+            raise UsageError(message, help=advice, code="needs_exercise")
         exercise = names.pop()
     elif exercise == "quiz":
         raise UsageError(
@@ -132,11 +118,8 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
                 return _of(inside[0], item)
     place = _cut(Path(file)) or _lying(results, student, file)
     if place is None:
-        raise NotFoundError(
-            f"There is no file {file}.",
-            help=f"Name it as {command('grade', 'assign', results.folder)} lists it, or by its path.",
-            code="file_not_found",
-        )
+        advice = f"Name it as {command('grade', 'assign', results.folder)} lists it, or by its path."
+        raise NotFoundError(f"There is no file {file}.", help=advice, code="file_not_found")
     return Assignment(student, exercise, file, *place, times)
 
 
@@ -179,16 +162,11 @@ def assign(
     at_least: str = "L2",
     accepted: str = "",
 ) -> list[Assigned]:
-    """Accept files as submissions, and grade them with the graders of the run.
+    """Accept files as submissions, and grade them with the graders of the run, in a gradebook opened for
+    writing.
 
-    Args:
-        results: over a gradebook opened for writing.
-        level, at_least: as in ``Terms``.
-        accepted: as in ``RerunOptions``.
-
-    Raises:
-        UngradableError: a file cannot be read.
-        UsageError: there is no reason, or the run's graders are not this checkout's.
+    The protection is as in ``Terms``, ``accepted`` as in ``RerunOptions``. UngradableError: a file cannot
+    be read. UsageError: there is no reason, or the run's graders are not this checkout's.
     """
     reason = given_reason(reason, "An assignment", "it is kept with the result")
     book, options = results.book, results.book.run_options()
@@ -196,26 +174,23 @@ def assign(
     timeout = float(options.get("timeout", 10.0))
     done: list[Assigned] = []
     with frozen(snapshot) as graders:
-        entries = {(one.student, one.exercise): (one, _entry(one, graders)) for one in assignments}
+        asked = {(one.student, one.exercise): one for one in assignments}
+        exercises = {one.exercise: graders.catalog.exercise(one.exercise) for one in assignments}
+        entries = [
+            Entry(one.student, exercise, submission_from(exercise, one.path, one.member))
+            for one in asked.values()
+            for exercise in [exercises[one.exercise]]
+        ]
         terms = Terms(level, at_least, timeout, results.seed, snapshot.sha256)
-        for graded in list(grade([entry for _, entry in entries.values()], terms)):
+        for graded in list(grade(entries, terms)):
             if not done:
                 book.keep_snapshot(snapshot.sha256, snapshot.packed)
                 facts = {"level": level, "at_least": at_least, "snapshot": snapshot.sha256}
                 book.begin_run("assign", {**options, **facts})
-            one, _ = entries[graded.entry.student, graded.entry.exercise.id]
+            one = asked[graded.entry.student, graded.entry.exercise.id]
             version = graded.version or graders.version(one.exercise)
             done.append(_recorded(results, one, graded, version, reason))
     return done
-
-
-def _entry(one: Assignment, graders: Unpacked) -> Entry:
-    exercise = graders.catalog.exercise(one.exercise)
-    try:
-        return Entry(one.student, exercise, submission_from(exercise, one.path, one.member))
-    except RefusedError as refused:
-        problem = refused.problem
-        raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
 
 
 def _recorded(results: Results, one: Assignment, graded: Graded, version: str, reason: str) -> Assigned:

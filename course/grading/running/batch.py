@@ -43,12 +43,8 @@ _TICK_S = 0.5
 
 @dataclass(frozen=True)
 class Graded:
-    """One entry and the verdict on it.
-
-    Attributes:
-        version: of the graders that judged it, by their own account; empty where none did.
-        asked: by check, the functions that it used, where the entry asks for that.
-    """
+    """One entry and the verdict on it; the version of the graders that judged, by their own account, and by
+    check the functions that it used, where the entry asks for that."""
 
     entry: Entry
     verdict: Verdict
@@ -57,14 +53,8 @@ class Graded:
 
 
 def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> Iterator[Graded]:
-    """Verdicts on all entries that have a submission or a problem, in the order of arrival.
-
-    Args:
-        terms: which snapshot judges, and how; it must be unpacked here.
-
-    Raises:
-        CourseError: no grader can work here at all (protection level, content).
-    """
+    """Verdicts on all entries that have a submission or a problem, in the order of arrival, by a snapshot
+    that is unpacked here; a CourseError if no grader can work at all (protection level, content)."""
     with Graders(terms, graders) as those:
         yield from those.grade(entries)
 
@@ -98,11 +88,7 @@ class WarmGrader:
         self._over = False
 
     def answer(self, job: Job) -> Answer:
-        """The grader's answer; an empty one if this submission killed every grader it was given to.
-
-        Raises:
-            InternalError: no grader can be started here.
-        """
+        """The grader's answer; an empty one if this submission killed every grader it was given to."""
         for _ in range(MAX_TRIES):
             answer = _answer_to(job, self._said(self._process or self._started(), job))
             if answer is not None:
@@ -114,11 +100,14 @@ class WarmGrader:
         for _ in range(MAX_TRIES):
             if self._over:
                 break
-            process = self._process = start_grader(self.config)
+            process = self._process = self._start()
             if self._said(process) is not None:
                 return process
             self.close()
         raise InternalError("A grader process cannot start; what it printed is above.")
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        return start_grader(self.config)
 
     def _said(self, process: subprocess.Popen[bytes], job: Job | None = None) -> bytes | None:
         """What a process says to a job, or first of all; None once it is dead.
@@ -169,12 +158,8 @@ class WarmGrader:
 
 
 class Graders:
-    """Grader processes of this machine; they stay warm from one class to the next.
-
-    Args:
-        terms: as for ``grade_all``.
-        graders: processes, at most; each is started when there is work for it.
-    """
+    """Grader processes of this machine, each started when there is work for it; they stay warm from one class
+    to the next."""
 
     def __init__(self, terms: Terms, graders: int) -> None:
         self._frozen = in_use(terms.graders)

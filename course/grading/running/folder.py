@@ -50,11 +50,8 @@ def taken_back(out: Path) -> Iterator[ClaimedName]:
 def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
     """The gradebook of a new run or, with ``resume``, of an earlier one, opened for writing."""
     if out.resolve().is_relative_to(submissions.resolve()):
-        raise UsageError(
-            f"--out {out} lies among the submissions.",
-            help="Name a folder elsewhere.",
-            code="out_inside_submissions",
-        )
+        message = f"--out {out} lies among the submissions."
+        raise UsageError(message, help="Name a folder elsewhere.", code="out_inside_submissions")
     path = out / BOOK
     if resume and path.exists():
         return Gradebook(path, writing=True)
@@ -62,39 +59,28 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
         make_folder(out, exist_ok=False)
     except FileExistsError:
         # A run that was killed before it made its gradebook leaves the folder and perhaps the draft.
-        begun = (
-            resume and out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
-        )
-        if not begun:
+        there = out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
+        if not (resume and there):
             what = "has no gradebook" if resume and out.is_dir() else "exists already"
-            there = ", or add --resume to finish the run that is there" if path.exists() else ""
-            raise UsageError(
-                f"{out} {what}; nothing was touched.",
-                help=rescue(path, "Name the folder of the run.") if resume else f"Name a new folder{there}.",
-                code="out_exists",
-            ) from None
+            more = ", or add --resume to finish the run that is there" if path.exists() else ""
+            advice = rescue(path, "Name the folder of the run.") if resume else f"Name a new folder{more}."
+            message = f"{out} {what}; nothing was touched."
+            raise UsageError(message, help=advice, code="out_exists") from None
         for draft in out.iterdir():
             draft.unlink(missing_ok=True)
     return Gradebook(path, create=True, writing=True)
 
 
 def make_folder(out: Path, *, exist_ok: bool = True) -> None:
-    """Make a folder for a gradebook, and those above it.
-
-    Raises:
-        FileExistsError: it is there, and should not be.
-        MissingCapabilityError: it cannot be made.
-    """
+    """Make a folder for a gradebook, and those above it; FileExistsError if it should not be there yet."""
     try:
         out.mkdir(parents=True, exist_ok=exist_ok)
     except FileExistsError:
         raise
     except OSError as error:
-        raise MissingCapabilityError(
-            f"{out} cannot be made: {error.strerror}.",
-            help="Name a folder that can be written.",
-            code="read_only",
-        ) from None
+        message = f"{out} cannot be made: {error.strerror}."
+        advice = "Name a folder that can be written."
+        raise MissingCapabilityError(message, help=advice, code="read_only") from None
 
 
 def export_all(out: Path, results: Results) -> None:
@@ -106,21 +92,17 @@ def export_all(out: Path, results: Results) -> None:
         write_csv(out / "grades.csv", results, results.all())
         write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
     except MissingCapabilityError as error:
-        raise MissingCapabilityError(
-            error.message,
-            help="The gradebook is complete. Make room, then give the same command again (a run with"
-            " --resume): only this is missing. `course grade export` writes it elsewhere.",
-            code=error.code,
-        ) from None
+        advice = (
+            "The gradebook is complete. Make room, then give the same command again (a run with"
+            " --resume): only this is missing. `course grade export` writes it elsewhere."
+        )
+        raise MissingCapabilityError(error.message, help=advice, code=error.code) from None
 
 
 @contextlib.contextmanager
 def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
-    """The results in the folder of a grading run.
-
-    Args:
-        writing: lock the gradebook; at the end write the files beside it anew, and a backup.
-    """
+    """The results in the folder of a grading run. For writing, the gradebook is locked; at the end the files
+    beside it are written anew, and a backup."""
     with Gradebook(out / BOOK, writing=writing) as book:
         yield Results(book)
         if writing:
@@ -131,10 +113,8 @@ def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
 
 @contextlib.contextmanager
 def previewed(out: Path) -> Iterator[Results]:
-    """A run's results, on which to try a change: a copy of the gradebook, which is thrown away.
-
-    The preview makes the change on the copy, so it cannot differ from the real one.
-    """
+    """A run's results, on which to try a change: a copy of the gradebook, which is thrown away, so that the
+    preview cannot differ from the real one."""
     path = out / BOOK
     Gradebook(path).close()  # it is complete, no process is writing it, and it is one file now
     folder = private_folder()
@@ -166,16 +146,12 @@ def remember(book: Gradebook, new: Roster) -> Merged:
 def note_looked(
     book: Gradebook, exercises: Iterable[str], read: set[str], others: set[str], *, named: bool
 ) -> None:
-    """Note that a run looks for these exercises: in all of a class, or in a part of it.
-
-    Args:
-        others: students with a folder that this run leaves aside.
-    """
+    """Note that a run looks for these exercises: in all of a class, or without the others who have a folder
+    in it."""
     looked = book.looked()
     if looked is None:
-        looked = {
-            name: Looked(whole=True) for name in (*book.exercise_ids(), *(one.id for one in book.exercises()))
-        }
+        known = (*book.exercise_ids(), *(one.id for one in book.exercises()))
+        looked = {name: Looked(whole=True) for name in known}
     with explained(book.path):
         without = msgspec.json.decode(book.meta().get("without_work", "[]"), type=list[str])
     new = others - {*book.student_ids(), *without}

@@ -20,15 +20,9 @@ from course.grading.intake.students import Entry, about_a_file
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version
 from course.grading.results.effective import Effective, Results, counted
+from course.grading.running import run as running
 from course.grading.running.batch import grade_all
-from course.grading.running.run import (
-    QUIZ_RECORD,
-    GradeAll,
-    Ungraded,
-    broken_checks,
-    graded_exercises,
-    unjudged,
-)
+from course.grading.running.run import QUIZ_RECORD, GradeAll, Ungraded, ungraded
 from course.grading.running.snapshot import Snapshot, Unpacked, fresh, frozen, kept
 from course.printable import some
 from course.quizzing.bank import Bank
@@ -118,21 +112,12 @@ class Regraded(msgspec.Struct, frozen=True):
 
 
 def rerun(
-    results: Results,
-    catalog: Catalog,
-    options: RerunOptions,
-    *,
-    grade: GradeAll = grade_all,
+    results: Results, catalog: Catalog, options: RerunOptions, *, grade: GradeAll = grade_all
 ) -> Regraded:
-    """Regrade the submissions in a gradebook.
+    """Regrade the submissions in a gradebook, which is opened for writing, unless it is a dry run.
 
-    Args:
-        results: over a gradebook opened for writing, unless it is a dry run.
-
-    Raises:
-        MissingCapabilityError: there are no hidden graders here, or no sufficient protection.
-        NotFoundError: the gradebook has no such graders.
-        IntegrityError: a submission in the gradebook is damaged.
+    MissingCapabilityError: there are no hidden graders here, or no sufficient protection. NotFoundError:
+    the gradebook has no such graders. IntegrityError: a submission in it is damaged.
     """
     snapshot, recorded = _graders(results, catalog, options)
     changes: list[Change] = []
@@ -144,12 +129,10 @@ def rerun(
         rescaled = _rescaled(results, graders.catalog)
         for before, after in task.pairs(grade):
             regraded += 1
-            broken += broken_checks(after)
+            broken += running.broken_checks(after)
             change, error = _change(before, after), after.verdict.error
             if after.verdict.state == "grader_error" and error is not None:
-                troubled.append(
-                    Ungraded(after.student, after.exercise, "grader_error", error.code, error.message)
-                )
+                troubled.append(ungraded(after, error))
             elif change is not None:
                 changes.append(change)
     return Regraded(
@@ -160,7 +143,7 @@ def rerun(
         changes=tuple(changes),
         graders=snapshot.sha256,
         troubled=tuple(troubled),
-        unjudged=unjudged(broken),
+        unjudged=running.unjudged(broken),
         rescaled=rescaled,
     )
 
@@ -194,11 +177,9 @@ def _graders(results: Results, catalog: Catalog, options: RerunOptions) -> tuple
     sha256 = wanted[-1].options["snapshot"] if wanted else None
     snapshot = kept(book, sha256, catalog.content, options.accepted)
     if snapshot is None:
-        raise NotFoundError(
-            f"The gradebook has no graders of a run or a snapshot {against!r}.",
-            help="`course grade log` lists the runs and their snapshots.",
-            code="snapshot_not_found",
-        )
+        message = f"The gradebook has no graders of a run or a snapshot {against!r}."
+        advice = "`course grade log` lists the runs and their snapshots."
+        raise NotFoundError(message, help=advice, code="snapshot_not_found")
     return snapshot, wanted[-1].options
 
 
@@ -309,7 +290,7 @@ class _Rerun:
         noted = {item.id for item in self._results.exercises()}
         bank = self._bank if QUIZ in noted and self._bank.ids else None
         graded = [item for name, item in self._exercises.items() if name in noted]
-        book.set_exercises(graded_exercises(graded, bank))
+        book.set_exercises(running.graded_exercises(graded, bank))
 
 
 def _change(before: Effective, after: Effective) -> Change | None:

@@ -35,23 +35,14 @@ from course.grading.results.effective import (
     replacing,
 )
 from course.grading.results.roster import Roster
+from course.grading.running import folder as runs
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.folder import (
-    BOOK,
-    begin,
-    export_all,
-    note_looked,
-    note_unread,
-    note_without_work,
-    remember,
-    taken_back,
-)
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
 from course.printable import one_line
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
-from course.scoring.verdict import OURS, format_points
+from course.scoring.verdict import OURS, Problem, format_points
 
 GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
@@ -73,7 +64,6 @@ class Summary:
     """The numbers of a run.
 
     Attributes:
-        states: number of results by state.
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
@@ -83,14 +73,12 @@ class Summary:
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
         unrecognised: files in the class folder with an unknown owner, one sentence each.
-        moved: scores that a second roster changed.
         dropped: students of the earlier roster that it does not have.
         unjudged: checks whose own code broke on a submission, a sentence each.
-        graders: digest of the snapshot that judged.
         pass_marks: of the exercises with results: the points that pass, and all points.
         unsettled: entries that could not be graded and have no score by hand.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
-        write_s: of these, spent on writing the gradebook.
+        write_s: of the seconds, those spent on writing the gradebook.
     """
 
     states: Counter[str] = field(default_factory=Counter)
@@ -125,16 +113,12 @@ class Summary:
 
     def count(self, results: Results) -> None:
         there = set(results.book.exercise_ids())
-        self.pass_marks = [
-            (item.pass_share * item.max_points, item.max_points)
-            for item in results.exercises()
-            if item.id in there
-        ]
+        graded = [item for item in results.exercises() if item.id in there]
+        self.pass_marks = [(item.pass_share * item.max_points, item.max_points) for item in graded]
         waiting = {effective.student for effective in results.all() if effective.waiting}
         known = (name for name in results.absent() if name not in waiting)
-        self.missing = [
-            name for name in known if all(results.has_looked(name, id_) for id_ in results.looked or ())
-        ]
+        looked = results.looked or ()
+        self.missing = [name for name in known if all(results.has_looked(name, id_) for id_ in looked)]
         self.strangers = results.unmatched(results.students())
         if results.roster is not None and self.strangers:
             self.compared = results.roster.compared(self.strangers, results.downloads)
@@ -151,11 +135,12 @@ class Summary:
                 self.levels[verdict.isolation] += 1
             broken += broken_checks(effective)
             if verdict.error is not None and not settled:
-                error = verdict.error
-                self.troubled.append(
-                    Ungraded(effective.student, effective.exercise, verdict.state, error.code, error.message)
-                )
+                self.troubled.append(ungraded(effective, verdict.error))
         self.unjudged = unjudged(broken)
+
+
+def ungraded(result: Effective, error: Problem) -> Ungraded:
+    return Ungraded(result.student, result.exercise, result.verdict.state, error.code, error.message)
 
 
 def broken_checks(result: Effective) -> list[tuple[str, str, str]]:
@@ -167,9 +152,7 @@ def broken_checks(result: Effective) -> list[tuple[str, str, str]]:
 def unjudged(broken: Iterable[tuple[str, str, str]]) -> tuple[str, ...]:
     """A sentence about each of these checks, the most frequent first."""
     found = Counter(broken).most_common()
-    return tuple(
-        f"{exercise} {check}, {count} of the results: {where}" for (exercise, check, where), count in found
-    )
+    return tuple(f"{task} {check}, {count} of the results: {where}" for (task, check, where), count in found)
 
 
 #: The name of a quiz record among the submissions in a gradebook.
@@ -227,23 +210,21 @@ def grade_class(
     _exercises(catalog, options.exercises)
     members = _members(folder, options)
     if among_graders(folder, catalog.content):
-        raise UsageError(
-            f"{folder} lies among the course's own exercises and graders.",
-            help="Move the submissions elsewhere: what lies there is kept and run as part of the graders.",
-            code="submissions_among_graders",
-        )
+        message = f"{folder} lies among the course's own exercises and graders."
+        advice = "Move the submissions elsewhere: what lies there is kept and run as part of the graders."
+        raise UsageError(message, help=advice, code="submissions_among_graders")
     started = time.monotonic()
     with (
-        taken_back(out) as taken,
-        begin(out, folder, resume=options.resume) as book,
-        frozen(
-            _begun_with(book, options, catalog) or fresh(catalog.content), options.exercises or None
-        ) as graders,
+        runs.taken_back(out) as taken,
+        runs.begin(out, folder, resume=options.resume) as book,
+        frozen(_graders(book, options, catalog), options.exercises or None) as graders,
     ):
         before = counting(Results(book)) if options.resume else {}
         run = _Run(members, graders, folder, options, book)
         if options.resume and (out / "grades.csv").is_file():
-            export_all(out, Results(book))  # what lies there says of work that came since that there is none
+            runs.export_all(
+                out, Results(book)
+            )  # what lies there says of work that came since that there is none
         for result, files in run.results(grade):
             with run.replacing(result.key):
                 graded = book.add(result, files)
@@ -251,18 +232,18 @@ def grade_class(
             run.one_less(result.key.student)
             report(run.view.of(graded), run.done, len(run.names))
         run.note_times()
-        note_unread(book, run.unread)
+        runs.note_unread(book, run.unread)
         summary = run.summary
         summary.unrecognised = [] if options.only else members.unrecognised
-        note_without_work(book, run.names)
+        runs.note_without_work(book, run.names)
         results = Results(book, run.roster)
         summary.count(results)
         if options.resume:
             summary.edited = edited_since(results, catalog)
             summary.lower = list(_lower(before, counting(results)))
-        export_all(out, results)
+        runs.export_all(out, results)
         summary.write_s = book.write_s
-    back_up(out / BOOK)
+    back_up(out / runs.BOOK)
     summary.elapsed_s = time.monotonic() - started
     return summary
 
@@ -277,10 +258,10 @@ def _lower(before: Scores, now: Scores) -> Iterator[str]:
             yield f"{student} {exercise}: {format_points(score)} before, {now_points} now"
 
 
-def _begun_with(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snapshot | None:
-    """The graders of a resumed run; None for a new run, or one of an older format."""
+def _graders(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snapshot:
+    """The graders of a resumed run; of a new one, or one of an older format, those of now."""
     sha256 = book.run_options().get("snapshot") if options.resume else None
-    return kept(book, sha256, catalog.content, options.accepted)
+    return kept(book, sha256, catalog.content, options.accepted) or fresh(catalog.content)
 
 
 def edited_since(results: Results, catalog: Catalog) -> list[str]:
@@ -299,12 +280,7 @@ class _Run:
     """One run over a class, with a gradebook to write to."""
 
     def __init__(
-        self,
-        members: ClassList,
-        graders: Unpacked,
-        folder: Path,
-        options: RunOptions,
-        book: Gradebook,
+        self, members: ClassList, graders: Unpacked, folder: Path, options: RunOptions, book: Gradebook
     ) -> None:
         only = options.only
         self._students = [one for one in members.students if not only or one.name in only]
@@ -354,13 +330,13 @@ class _Run:
             book.keep_snapshot(self.summary.graders, self._graders.snapshot.packed)
             book.begin_run("run", facts)
         asked = [*self._versions, *([QUIZ] if self._with_quiz else [])]
-        note_looked(book, asked, self.names, self._left_aside, named=bool(options.exercises))
+        runs.note_looked(book, asked, self.names, self._left_aside, named=bool(options.exercises))
         book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
         # Before a roster says who is enrolled: until their work is looked at, nobody handed in nothing.
         book.set_waiting(sorted(self.names), others=bool(options.only))
         if options.roster is not None:
-            found = remember(book, options.roster)
+            found = runs.remember(book, options.roster)
             self.roster, self.summary.moved, self.summary.dropped = found.roster, found.moved, found.dropped
 
     def results(self, grade: GradeAll) -> Iterator[tuple[Result, dict[str, bytes] | None]]:
@@ -370,11 +346,9 @@ class _Run:
         )
         for graded in grade(self._left_to_do(), terms):
             yield from self._quizzes()
-            submission = graded.entry.submission
-            yield (
-                Result(self._key(graded.entry, graded.version), graded.entry.told(graded.verdict)),
-                dict(submission.files) if submission else None,
-            )
+            entry, submission = graded.entry, graded.entry.submission
+            result = Result(self._key(entry, graded.version), entry.told(graded.verdict))
+            yield result, dict(submission.files) if submission else None
         yield from self._quizzes()
 
     def _key(self, entry: Entry, judged_by: str = "") -> Key:
@@ -417,10 +391,8 @@ class _Run:
         counts = next(self._book.results(*about), None)
         if counts is None or counts.key.submission_sha256 == entry.sha256:
             return False
-        said = f" {entry.problem.message}" if entry.problem else ""
-        self.summary.stay.append(
-            f"{' '.join(about)}:{said or f' There is no {entry.exercise.module} any more.'}"
-        )
+        said = entry.problem.message if entry.problem else f"There is no {entry.exercise.module} any more."
+        self.summary.stay.append(f"{' '.join(about)}: {said}")
         self.summary.already += 1
         return True
 
@@ -580,13 +552,8 @@ def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...
 
 
 def _check_assignment(members: ClassList, book: Gradebook, out: Path) -> None:
-    """Refuse the download of a second assignment of Moodle's, which would double the class.
-
-    Moodle gives each student another number in each assignment, and folders are called after it.
-
-    Raises:
-        UsageError: students of the gradebook have other numbers in this download.
-    """
+    """Refuse the download of a second assignment of Moodle's, which would double the class: Moodle gives each
+    student another number in each, and folders are called after it."""
     known = {one.key: name for name, one in book.students().items() if one.source == "moodle"}
     called = {one.name: known[one.key] for one in book.students().values() if one.source == "moodle"}
     new = {who.name: one for who in members.students if (one := who.identity) and one.source == "moodle"}
@@ -606,11 +573,9 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
     if options.only:
         unknown = sorted(set(options.only) - {student.name for student in found.students})
         if unknown:
-            raise UsageError(
-                f"{folder} has no student {unknown[0]!r}.",
-                help="--only takes the name of a student's folder.",
-                code="student_not_found",
-            )
+            message = f"{folder} has no student {unknown[0]!r}."
+            advice = "--only takes the name of a student's folder."
+            raise UsageError(message, help=advice, code="student_not_found")
     return found
 
 
@@ -619,9 +584,6 @@ def _seed(book: Gradebook, options: RunOptions) -> int:
         return options.seed if options.seed is not None else secrets.randbits(31)
     recorded = Results(book).seed
     if options.seed not in (None, recorded):
-        raise UsageError(
-            f"This gradebook was begun with --seed {recorded}.",
-            help="Leave --seed out to go on, or grade into a new folder.",
-            code="other_seed",
-        )
+        advice = "Leave --seed out to go on, or grade into a new folder."
+        raise UsageError(f"This gradebook was begun with --seed {recorded}.", help=advice, code="other_seed")
     return recorded

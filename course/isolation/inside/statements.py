@@ -47,14 +47,8 @@ MERGE = ("<<<<<<<", "=======", ">>>>>>>")
 
 
 class Piece(NamedTuple):
-    """Some lines of a module that belong together.
-
-    Attributes:
-        line: of the module on which it begins, 1 first.
-        body: its statements, with the module's lines; empty if it is no Python.
-        error: why it is none.
-        names: what a piece that is no Python would define, by its look.
-    """
+    """Some lines of a module that belong together: the line on which they begin, and their statements with
+    the module's lines. If they are no Python: why, and the names that they would define, by their look."""
 
     line: int
     body: list[ast.stmt]
@@ -63,11 +57,8 @@ class Piece(NamedTuple):
 
 
 def parsed(text: str, line: int = 1) -> list[ast.stmt]:
-    """The statements of a text that begins on a line.
-
-    Raises:
-        UNREADABLE: it is no Python; a SyntaxError's line is the module's.
-    """
+    """The statements of a text that begins on a line; of one that is ``UNREADABLE`` the error, with the
+    module's line."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about escapes in the student's strings
@@ -89,9 +80,8 @@ def pieces(source: str) -> list[Piece]:
     """
     lines = source.split("\n")
     starts = [number for number, line in enumerate(lines) if _BEGINS.match(line)]
-    starts = [
-        at for before, at in zip([None, *starts], starts, strict=False) if not _decorates(lines, before)
-    ]
+    decorated = {after for at, after in itertools.pairwise(starts) if lines[at].startswith("@")}
+    starts = [at for at in starts if at not in decorated]
     ends = [*starts[1:], len(lines)]
     # Each line is tried once, and again only behind something that is not finished.
     left = 8 * len(source) + 100_000
@@ -108,10 +98,6 @@ def pieces(source: str) -> list[Piece]:
         found.append(piece)
         at = upto
     return found
-
-
-def _decorates(lines: list[str], at: int | None) -> bool:
-    return at is not None and lines[at].startswith("@")
 
 
 def _goes_on(error: BaseException) -> bool:
@@ -135,11 +121,8 @@ def defined_in(text: str) -> list[str]:
 
 
 def needed(statements: Sequence[ast.stmt], names: Iterable[str], always: Collection[int] = ()) -> list[int]:
-    """Indices of the statements that bind or change names, and of those that these need, in order.
-
-    Args:
-        always: indices of statements that count whether or not anything needs them.
-    """
+    """Indices of the statements that bind or change names, and of those that these need, in order;
+    ``always`` are indices of statements that count whether or not anything needs them."""
     binding: dict[str, list[int]] = {}
     for index, node in enumerate(statements):
         for name in bound(node):

@@ -79,18 +79,18 @@ def room_for(size: int, begun: bytes) -> memoryview:
 class Kind(enum.IntEnum):
     """The kind of a frame. The first group goes to the worker, the second comes from it."""
 
-    LOAD = 1  # [files, module name]
+    LOAD = 1  # [files, module name, functions that are needed, or none for all]
     CALL = 2  # [function, args, kwargs, inspect]
     MARCH = 3  # [step, [[rhs, q0, v0, t0, h, n], ...]]
     REPLY = 4  # value of a callback
     EACH = 6  # [function, [args, ...]]
     FOLD = 7  # [function, state, [args, ...], keys to keep or None]
-    REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
+    REPLY_RAISE = 5  # "exception's name: message": the callback refused its arguments
     READY = 15  # None: locked down, and nothing of the submission has run yet
     LOADED = 16  # names of functions, and what was left out of the module
-    REFUSED = 17  # {stage, type, message, line, text}
+    REFUSED = 17  # as RAISED, with stage; instead of READY, the layer that could not be locked down
     RESULT = 18  # value
-    RAISED = 19  # {type, message, line, function, frames}
+    RAISED = 19  # {type, message, frames, bases}; of a SyntaxError line and text, too
     CALLBACK = 20  # [number of the callable, kwargs or None, *args]
     STUCK = 21  # {frames, lines}: frames that were there at each look, and lines of the innermost
 
@@ -275,10 +275,8 @@ def _put_other(value: Any, parts: Parts, names: Names | None, depth: int) -> int
         return put(value.item() if value.dtype.itemsize <= 8 else float(value), parts, names, depth)
     if isinstance(value, complex):
         return _put_array(np.asarray(complex(value)), parts, names, depth)
-    for base, write in _BASES:
-        if isinstance(value, base):
-            return write(value, parts, names, depth)
-    raise AssertionError(f"{_name_of(value)} is no kind of value")
+    base = next(base for base in _BASES if isinstance(value, base))
+    return _PUT[base](value, parts, names, depth)
 
 
 def _put_lowered(value: Any, parts: Parts, names: Names | None, depth: int) -> int:
@@ -315,16 +313,8 @@ _PUT: dict[type, Callable[[Any, Parts, Names | None, int], int]] = {
     bytes: _put_bytes,
 }
 #: Subclasses arrive as the plain value they extend; bool before int, since every bool is an int.
-_BASES: tuple[tuple[type, Callable[[Any, Parts, Names | None, int], int]], ...] = (
-    (bool, _put_bool),
-    (float, _put_float),
-    (int, _put_int),
-    (str, _put_str),
-    (list, _put_list),
-    (tuple, _put_list),
-    (dict, _put_dict),
-)
-_FAMILIAR = (np.ndarray, np.generic, complex, *(base for base, _ in _BASES))
+_BASES = (bool, float, int, str, list, tuple, dict)
+_FAMILIAR = (np.ndarray, np.generic, complex, *_BASES)
 
 
 # ---
@@ -584,24 +574,16 @@ _NO_HEADER = bytes(HEADER.size)
 
 
 class Codec:
-    """Encodes and decodes frames for one side of one connection.
-
-    Args:
-        names: resolves callables, right-hand sides and seeds; None refuses them.
-        accept_bytes: whether a bytes value may arrive (only a worker accepts it: the submission's files).
-    """
+    """Encodes and decodes frames for one side of one connection. ``names`` resolves callables, right-hand
+    sides and seeds; bytes are accepted by a worker alone, which gets the submission's files."""
 
     def __init__(self, names: Names | None = None, *, accept_bytes: bool = False) -> None:
         self._names = names
         self._accept_bytes = accept_bytes
 
     def encode(self, kind: int, value: Any) -> bytearray:
-        """One frame.
-
-        Raises:
-            UnsupportedValueError: something in ``value`` cannot cross.
-            TooMuchError: it is too large or too deep.
-        """
+        """One frame; an UnsupportedValueError if something in ``value`` cannot cross, a TooMuchError if it
+        is too large."""
         parts: list[bytes | memoryview] = [_NO_HEADER]
         arrays = put(value, parts, self._names, MAX_DEPTH)
         frame = bytearray().join(parts)
@@ -612,11 +594,8 @@ class Codec:
         return frame
 
     def decode(self, body: bytes | memoryview) -> Any:
-        """The value of a frame's body (what follows the header).
-
-        Raises:
-            WireError: the body is malformed in any way.
-        """
+        """The value of a frame's body (what follows the header); a WireError if it is malformed in any
+        way."""
         try:
             value = quick(body)
             if value is not OTHER:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import socket
 
 from ...physics import systems
-from . import declared, loading, loops, statements, wire
+from . import loading, loops, statements, wire
 
 Kind = wire.Kind
 
@@ -70,11 +70,8 @@ class CappedText(io.TextIOBase):
 
 
 class Worker:
-    """Answers one grader over one socket until the socket closes.
-
-    Args:
-        imports: top-level packages the submission may import beside the standard library.
-    """
+    """Answers one grader over one socket until the socket closes. Beside the standard library the
+    submission may import the packages of ``imports``."""
 
     def __init__(self, sock: socket.socket, imports: frozenset[str]) -> None:
         self._sock = sock
@@ -203,7 +200,7 @@ class Worker:
             with contextlib.suppress(OSError), open(name, "wb") as handle:  # noqa: PTH123
                 handle.write(content)
         sys.path.insert(0, os.getcwd())  # noqa: PTH109 - pathlib is not worth its import here
-        imports = declared.Imports(self._imports | {name[:-3] for name in files}, self._imports)
+        imports = loading.Imports(self._imports | {name[:-3] for name in files}, self._imports)
         sys.meta_path.insert(0, imports)
         try:
             source = importlib.util.decode_source(files[main])
@@ -220,7 +217,7 @@ class Worker:
             fault = module.faults[0]
             self._send(Kind.REFUSED, {"stage": fault.stage, **_described(fault.error)})
             return
-        declared.StandIn.loading = False
+        loading.StandIn.loading = False
         self._module = module.module
         loaded = list(vars(self._module).items())
         names = [name for name, value in loaded if callable(value) and type(name) is str]

@@ -205,7 +205,9 @@ def _become_worker(config: dict[str, Any], newborn: _ForkSetup) -> socket.socket
         lockdown.apply_limits(**config["limits"])
         lockdown.apply_seccomp(newborn.program)
     except BaseException as error:  # noqa: BLE001 - fail closed, and say which layer it was
-        _refuse(sock, f"{type(error).__name__}: {error}")
+        from course_worker.isolation.inside import wire
+
+        sock.sendall(wire.Codec().encode(wire.Kind.REFUSED, f"{type(error).__name__}: {error}"))
         os._exit(1)
     return sock
 
@@ -222,12 +224,6 @@ def _keep_only(sock: int, output: int, rules: int) -> None:
     close_range, last = ctypes.c_long(436), ctypes.c_uint(0xFFFFFFFF)
     if _libc.syscall(close_range, ctypes.c_uint(len(kept)), last, ctypes.c_uint(0)) != 0:
         os.closerange(len(kept), os.sysconf("SC_OPEN_MAX"))
-
-
-def _refuse(sock: socket.socket, message: str) -> None:
-    from course_worker.isolation.inside import wire
-
-    sock.sendall(wire.Codec().encode(wire.Kind.REFUSED, message))
 
 
 def _request(control: socket.socket) -> tuple[dict[str, Any] | None, list[int]]:

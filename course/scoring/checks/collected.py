@@ -42,13 +42,11 @@ from course.scoring.verdict import Visibility
 
 
 def companion(exercise_id: str, module: str) -> ModuleType:
-    """A module that public and hidden checks of an exercise share: ``exercises/<id>/checking/<module>.py``.
+    """A module that public and hidden checks of an exercise share:
+    ``exercises/<id>/checking/<module>.py``.
 
     What the course itself asks for, ``questions`` and ``report``, lies beside the checks. It is loaded by
-    path from the course in use, once per process.
-
-    Raises:
-        FileNotFoundError: the exercise has no such file.
+    path from the course in use, once per process; FileNotFoundError if there is none.
     """
     return _load(companion_path(exercise_id, module), f"{exercise_id}_{module}")
 
@@ -114,21 +112,15 @@ def questions_of(exercise_id: str) -> ModuleType | None:
 
 
 def sibling(file: str, module: str) -> ModuleType:
-    """A module beside a file of checks: ``sibling(__file__, "bundles")``.
-
-    Raises:
-        FileNotFoundError: there is no such file.
-    """
+    """A module beside a file of checks, ``sibling(__file__, "bundles")``; FileNotFoundError if there is
+    none."""
     path = Path(file).resolve()
     return _load(path.with_name(f"{module}.py"), f"{path.parent.name}_{module}")
 
 
 def not_importable(error: BaseException, file: Path) -> ContentError:
-    """The fault of a course's file that raises while a check file is imported.
-
-    Args:
-        file: the one to name where the error itself names none of the course's.
-    """
+    """The fault of a course's file, of ``file`` if nothing tells another, that raises while a check file
+    is imported."""
     while isinstance(error, pytest.Collector.CollectError) and error.__cause__ is not None:
         error = error.__cause__
     if isinstance(error, ContentError):
@@ -173,13 +165,8 @@ _HOME_ONLY = re.compile(r" \(no points here[^)]*\)$")
 
 @dataclass(frozen=True)
 class Check:
-    """One check, as its function declares it.
-
-    Attributes:
-        id: the function's name without ``test_``.
-        title: first line of its docstring, without a note on points.
-        requires: ids of the checks that must have passed before.
-    """
+    """One check, as its function declares it: by its name without ``test_``, with the first line of its
+    docstring as title, and the checks that must have passed before."""
 
     id: str
     title: str
@@ -190,12 +177,8 @@ class Check:
 
 
 class CollectedChecks:
-    """The checks of one exercise.
-
-    Args:
-        files: check files with the visibility of what is in them, public first.
-        draws: public checks draw their inputs too, as in a grading run.
-    """
+    """The checks of one exercise: of these files, public ones first. ``draws``: those draw their inputs
+    too, as in a grading run."""
 
     def __init__(self, files: list[tuple[Path, Visibility]], *, draws: bool = False) -> None:
         self._plugin = CheckPlugin(draws=draws)
@@ -216,10 +199,8 @@ class CollectedChecks:
         for check in self._checks:
             for required in check.requires:
                 if required not in self._items:
-                    item = self._items[check.id]
-                    raise _fault(
-                        item, f"it requires {required!r}, which is not a check", "Name an existing check."
-                    )
+                    problem = f"it requires {required!r}, which is not a check"
+                    raise _fault(self._items[check.id], problem, "Name an existing check.")
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -244,27 +225,24 @@ class CollectedChecks:
 
     def run(self, check: Check, submission: RemoteSubmission) -> BaseException | None:
         """How the check ends for this submission: None if it passes, else what it raised."""
-        item = self._items[check.id]
+        item: Any = self._items[check.id]
         self._plugin.submission = submission
         try:
             with np.errstate(all="ignore"):  # a check may compute with whatever a submission returned
                 if check.id in self._plain:
-                    returned, outcome = self._called(item, self._plain[check.id])
-                    if returned is None:
-                        return outcome
+                    fixtures = self._plugin.fixtures(item.name, self._plain[check.id])
+                    if item.obj(**fixtures) is None:
+                        return None
+        except (KeyboardInterrupt, pytest.exit.Exception):  # ends pytest's own protocol, too
+            raise
+        except BaseException as error:  # noqa: BLE001 - whatever a check raises is how it ends
+            return error
+        else:
+            with np.errstate(all="ignore"):
                 # What returns something may be no test at all: pytest knows.
                 return self._through_pytest(item)
         finally:
             self._plugin.submission = None
-
-    def _called(self, item: Any, taken: tuple[str, ...]) -> tuple[object, BaseException | None]:
-        """What the function of a check returned, and what it raised."""
-        try:
-            return item.obj(**self._plugin.fixtures(item.name, taken)), None
-        except (KeyboardInterrupt, pytest.exit.Exception):  # ends pytest's own protocol, too
-            raise
-        except BaseException as error:  # noqa: BLE001 - whatever a check raises is how it ends
-            return None, error
 
     def _through_pytest(self, item: pytest.Item) -> BaseException | None:
         self._plugin.outcome = None

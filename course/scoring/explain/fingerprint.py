@@ -30,11 +30,8 @@ _LARGEST = 1e300  # JSON has no infinity
 
 
 def fingerprint(answers: Answers) -> tuple[float, ...]:
-    """``SUMS`` numbers for the answers to the questions of a task.
-
-    Args:
-        answers: plain values, one for each question; an exception's class name as ``{"raised": name}``.
-    """
+    """``SUMS`` numbers for the answers to the questions of a task; of an exception, ``{"raised": name}``
+    is the answer."""
     numbers = numbers_of(answers)[:_MOST]
     weights = np.random.default_rng(20260).uniform(-1.0, 1.0, (SUMS, _MOST))[:, : len(numbers)]
     # Large values count by their logarithm, so that a path that diverges is still compared digit by digit.
@@ -50,11 +47,8 @@ def numbers_of(answers: Answers) -> np.ndarray[Any, Any]:
 
 
 def read(answer: Any, reader: Callable[[Any], Any] | None) -> Any:
-    """The part of an answer that counts: the result of the exercise's reader.
-
-    Args:
-        reader: ``READ`` of the exercise's questions; an answer that it cannot read counts like an exception.
-    """
+    """The part of an answer that counts, by ``READ`` of the exercise's questions; one that it cannot read
+    counts like an exception."""
     if reader is None or (isinstance(answer, dict) and answer.keys() == {"raised"}):
         return answer
     try:
@@ -75,8 +69,8 @@ def in_range(value: float) -> float:
 def _put(numbers: array.array[float], value: Any, depth: int = 8) -> None:
     if isinstance(value, dict) and value.keys() == {"raised"}:
         numbers.append(_RAISED)
-    elif isinstance(value, np.ndarray):
-        _put_array(numbers, value)
+    elif isinstance(value, np.ndarray) and value.ndim:
+        _put_floats(numbers, _with_lengths(_as_numbers(value)))
     elif isinstance(value, list | tuple) and depth:
         numbers.append(float(len(value)))
         if set(map(type, value)) == {float}:
@@ -89,14 +83,7 @@ def _put(numbers: array.array[float], value: Any, depth: int = 8) -> None:
         for key in sorted(value, key=str):  # the order of insertion does not matter
             _put(numbers, value[key], depth - 1)
     else:
-        numbers.append(_number(value))
-
-
-def _put_array(numbers: array.array[float], value: np.ndarray[Any, Any]) -> None:
-    if value.ndim == 0:
-        numbers.append(_number(value.item()))
-    else:
-        _put_floats(numbers, _with_lengths(_as_numbers(value)))
+        numbers.append(_number(value.item() if isinstance(value, np.ndarray) else value))
 
 
 def _as_numbers(value: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
@@ -132,14 +119,9 @@ def _number(value: Any) -> float:
         if math.isnan(number):
             return _NAN
         return math.copysign(_INFINITE, number) if math.isinf(number) else number
-    if isinstance(value, str):
-        return _text(value)
+    if isinstance(value, str):  # a different number for every text, except by a chance of one in thousands
+        return _TEXT + zlib.crc32(value.encode("utf-8", "replace")) / 2**32
     return _NONE if value is None else _OTHER
-
-
-def _text(value: str) -> float:
-    """A different number for every text, except by a chance of one in thousands."""
-    return _TEXT + zlib.crc32(value.encode("utf-8", "replace")) / 2**32
 
 
 # ---

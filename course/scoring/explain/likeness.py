@@ -54,12 +54,8 @@ _PLACES = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
 def likeness(actual: Any, expected: Any, given: Mapping[str, Any] | None = None) -> str:
-    """One sentence on what two values have in common; "" if nothing worth saying.
-
-    Args:
-        actual, expected: plain values, as a finding has them.
-        given: the inputs by name, as it has them.
-    """
+    """One sentence on what two plain values have in common, and one with the inputs; "" if nothing worth
+    saying."""
     if isinstance(actual, dict) and isinstance(expected, dict) and actual.keys() == expected.keys():
         actual, expected = list(actual.values()), list(expected.values())
         if len(actual) == 1:
@@ -74,11 +70,8 @@ def likeness(actual: Any, expected: Any, given: Mapping[str, Any] | None = None)
 
 
 def of_cases(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
-    """What all wrong results of a check have in common, which one may have by chance; "" if nothing.
-
-    Args:
-        cases: actual value, expected value and inputs of each, the one first that is shown.
-    """
+    """What all wrong results of a check have in common, which one may have by chance; "" if nothing. Of
+    each case actual value, expected value and inputs, the one first that is shown."""
     said = [likeness(*case) for case in cases]
     here = "Here your result is "
     if len(cases) < 2 or not said[0].startswith(here):
@@ -206,14 +199,8 @@ def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
     ratio = a / e
     known = next((words for factor, words in _TIMES.items() if _same(abs(ratio), factor)), "")
     if known:
-        also = [
-            n
-            for n, v in inputs
-            if n[0] == "`"
-            and v
-            and not (_is_small(v) or _is_small(1.0 / v))
-            and (_same(v, abs(ratio)) or _same(v * abs(ratio), 1.0))
-        ]
+        some = [(n, v) for n, v in inputs if n[0] == "`" and v and not (_is_small(v) or _is_small(1.0 / v))]
+        also = [n for n, v in some if _same(v, abs(ratio)) or _same(v * abs(ratio), 1.0)]
         turned = ", with the other sign" if ratio < 0 else ""
         return known + turned + (f" ({also[0]} is {dict(inputs)[also[0]]:g})" if len(also) == 1 else "")
     for power, words in ((1, "times {}"), (-1, "over {}"), (2, "times {} squared"), (-2, "over {} squared")):
@@ -277,11 +264,8 @@ def _of_order(a: Array, e: Array) -> str:
     if a.ndim == 2 and _same(a, e.T):
         return "Your matrix is the right one with rows and columns exchanged."
     if _same(a, e[::-1]) and len(e) > 1:
-        return (
-            "Each of the two stands in the other's place."
-            if len(e) == 2
-            else "The values are right, in reverse order."
-        )
+        two = "Each of the two stands in the other's place."
+        return two if len(e) == 2 else "The values are right, in reverse order."
     if e.ndim == 1 and _same(np.sort(a), np.sort(e)):
         return "The values are right, in another order."
     if len(e) > 3 and np.ptp(e) > 0:
@@ -328,7 +312,7 @@ def _of_all(a: Array, e: Array, given: Mapping[str, Any]) -> str:
     if not a.any():
         return ""
     if _same(a, np.full_like(a, a.flat[0])) and np.ptp(e) > 0:
-        return f"All your values are the same{_times(a)}."
+        return f"All your values are the same{'' if a.size < 3 else f': {a.flat[0]:.6g}'}."
     some = e != 0.0
     if np.count_nonzero(some) > 1 and not a[~some].any():
         ratios = a[some] / e[some]
@@ -339,10 +323,6 @@ def _of_all(a: Array, e: Array, given: Mapping[str, Any]) -> str:
         by = float(a.flat[0] - e.flat[0])
         return f"Every value is too {'large' if by > 0 else 'small'} by the same {abs(by):.6g}."
     return ""
-
-
-def _times(a: Array) -> str:
-    return "" if a.size < 3 else f": {a.flat[0]:.6g}"
 
 
 def _of_lengths(a: Array, e: Array) -> str:
@@ -394,10 +374,7 @@ def _around(parts: Sequence[ast.AST], inner: Collection[ast.AST]) -> set[ast.AST
 
 def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
     """The advice where a function gives None instead of a value; "" if its text does not tell more.
-
-    Args:
-        name: what is None, as the finding calls it: the result, or an entry of the dict that is returned.
-    """
+    ``name`` is the result, or an entry of the dict that is returned, as the finding calls it."""
     function = next(iter(functions_of(source, task)), None)
     if function is None:
         return ""
@@ -420,12 +397,8 @@ def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
 
 def _several(returned: list[ast.expr | None], name: str) -> str:
     """That there are other values beside the one called ``name``; "" if a ``return`` shows none."""
-    if any(
-        isinstance(key, ast.Constant) and key.value == name
-        for value in returned
-        if isinstance(value, ast.Dict)
-        for key in value.keys
-    ):
+    keys = [key for value in returned if isinstance(value, ast.Dict) for key in value.keys]
+    if any(isinstance(key, ast.Constant) and key.value == name for key in keys):
         return "A dict is returned"
     beside = name.isidentifier() and any(isinstance(value, ast.Tuple) for value in returned)
     return "Several values are returned" if beside else ""

@@ -82,11 +82,7 @@ class Words:
         self.entries = entries
 
     def __call__(self, code: str, divergence: Divergence | None = None) -> Diagnosis:
-        """The diagnosis of that code.
-
-        Raises:
-            KeyError: the exercise has no words for it.
-        """
+        """The diagnosis of that code; KeyError if the exercise has no words for it."""
         if code == KEPT.code and code not in self.entries:
             return KEPT
         if code not in self.entries:
@@ -103,13 +99,8 @@ class Words:
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """One failed check of a task.
-
-    Attributes:
-        guess: the probe's diagnosis; None if it has none.
-        finite: False if a compared value was nan or infinite.
-        looked: its own probe was asked, on the numbers that it shows.
-    """
+    """One failed check of a task: its probe's diagnosis, whether all compared values were finite, and
+    whether its own probe was asked, on the numbers that it shows."""
 
     check: str
     guess: Diagnosis | None
@@ -119,13 +110,9 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """The diagnosis of a task's failed checks.
-
-    Attributes:
-        diagnosis: the mistake; None if none is recognised.
-        own: ids of checks that keep their own diagnosis: facts that they saw directly.
-        bare: ids of checks that it is not said of: they saw another mistake, or not this consequence.
-    """
+    """The diagnosis of a task's failed checks, if one is recognised. Checks keep their ``own``: facts that
+    they saw directly. ``bare`` ones saw another mistake, or not this consequence, so that it is not said
+    of them."""
 
     diagnosis: Diagnosis | None
     own: frozenset[str]
@@ -221,11 +208,8 @@ def _sentences(text: str) -> list[str]:
 
 def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:
     """The origin of a nan, if all checks that met one agree on it; otherwise only that there is one."""
-    said = {
-        f.guess.code: f.guess
-        for f in failures
-        if not f.finite and f.guess and words.kind(f.guess.code) == "nan"
-    }
+    guesses = [one.guess for one in failures if not one.finite and one.guess]
+    said = {guess.code: guess for guess in guesses if words.kind(guess.code) == "nan"}
     if len(said) == 1:
         return next(iter(said.values()))
     return next((guess for code, guess in said.items() if code in NOT_FINITE), None)
@@ -266,12 +250,8 @@ _Kind = TypeVar("_Kind")
 
 
 class Row(msgspec.Struct, frozen=True, array_like=True):
-    """One wrong program: the codes of its mistakes, and its answers.
-
-    Attributes:
-        codes: one for each mistake.
-        sums: its fingerprint, or the answers themselves where a task is compared within a tolerance.
-    """
+    """One wrong program: the codes of its mistakes, and its fingerprint; or the answers themselves where a
+    task is compared within a tolerance."""
 
     codes: tuple[str, ...]
     sums: tuple[float, ...]
@@ -281,7 +261,6 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     """What ``diagnoses.json`` holds of an exercise.
 
     Attributes:
-        words: by code.
         made_from: digest of what it was computed from.
         within: relative tolerance of the tasks whose answers are stored directly.
         rows: by task; programs with one mistake come first.
@@ -304,17 +283,11 @@ def table_path(folder: Path) -> Path:
 
 
 def read_table(folder: Path) -> Table | None:
-    """The table of the exercise in this folder; None if it has none.
-
-    Raises:
-        ContentError: it is damaged.
-    """
+    """The table of the exercise in this folder; None if it has none, ContentError if it is damaged."""
     path = table_path(folder)
-    return (
-        (tables_in(path).get(folder.name) if path.parent != folder else _own(path))
-        if path.is_file()
-        else None
-    )
+    if not path.is_file():
+        return None
+    return _own(path) if path.parent == folder else tables_in(path).get(folder.name)
 
 
 def words_in(folder: Path) -> Words:

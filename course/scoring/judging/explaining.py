@@ -37,7 +37,7 @@ from course.scoring.explain.story import (
 from course.scoring.failures import CheckFailed
 from course.scoring.remote import Heard, RemoteSubmission
 from course.scoring.values import leaves
-from course.scoring.verdict import CheckResult, Finding, Status
+from course.scoring.verdict import CheckResult, Status
 
 #: Diagnosis of a function that calls another function of the exercise, which is wrong itself.
 CASCADE = "CALLS_A_WRONG_FUNCTION"
@@ -52,13 +52,11 @@ _STRANGE = (TypeError, ValueError, ArithmeticError, LookupError, AttributeError,
 
 
 class Explainer:
-    """Diagnoses of one exercise. Without a table, each check keeps its own diagnosis.
+    """Diagnoses of one exercise. Without a table of its mistakes, each check keeps its own diagnosis.
 
-    Args:
-        table: what is known about its mistakes.
-        questions: its ``questions.py``; see ``answer_numbers``. Where one function returns several things,
-            ``PARTS`` names the thing that each check is about. A mistake in one thing says nothing about
-            another, so each thing has its own story.
+    Its questions are those of ``answer_numbers``. Where one function returns several things, ``PARTS``
+    names the thing that each check is about: a mistake in one says nothing about another, so each has its
+    own story.
     """
 
     def __init__(self, table: Table, questions: ModuleType) -> None:
@@ -79,15 +77,10 @@ class Explainer:
         heard: Mapping[str, Past] = types.MappingProxyType({}),
         again: Again | None = None,
     ) -> None:
-        """Put the story of each task into the results of its failed checks.
-
-        Args:
-            heard: of failed checks, the CPU time they took, s, and the calls that were listened to.
-            again: asks the submission again, in workers of its own.
-        """
-        wrong = {
-            result.task for result in results.values() if result.status not in {Status.PASS, Status.SKIP}
-        }
+        """Put the story of each task into the results of its failed checks. Of these, ``heard`` has the
+        CPU time that they took, s, and the calls that were listened to."""
+        fine = {Status.PASS, Status.SKIP}
+        wrong = {result.task for result in results.values() if result.status not in fine}
         callers = calls_between(source, tasks_asked(self._questions))
         for task in sorted(wrong):
             of_task = [result for result in results.values() if result.task == task]
@@ -97,14 +90,15 @@ class Explainer:
             gone = any(result.status in _GONE for result in of_task)
             names = frozenset(self._parts.get(check.id, task) for check in checks)
             said = {} if gone else self._answer_sums(task, remote, names)
-            culprits = _culprits(task, callers, wrong)
+            # The wrong functions that it calls: those that call no wrong one themselves, if there are any.
+            called = [name for name in callers.get(task, ()) if name in wrong]
+            culprits = [name for name in called if wrong.isdisjoint(callers.get(name, ()))] or called
             past = [heard[check.id] for check in checks if check.id in heard]
             kept = bool(again and not gone and not culprits and _kept(past, task, again))
             for name in dict.fromkeys(self._parts.get(check.id, task) for check in checks):
                 part = [check for check in checks if self._parts.get(check.id, task) == name]
-                story = self._story(
-                    name, {check.id: failed[check.id] for check in part}, said.get(name), kept
-                )
+                mine = {check.id: failed[check.id] for check in part}
+                story = self._story(name, mine, said.get(name), kept)
                 for check in part:
                     if check.id not in story.own:
                         results[check.id] = _retold(check, failed[check.id], story, task, culprits)
@@ -125,18 +119,13 @@ class Explainer:
         self, name: str, failed: Mapping[str, CheckFailed], sums: tuple[float, ...] | None, kept: bool
     ) -> Story:
         failures = [
-            Failure(check, failure.guess, _finite(failure.finding), failure.looked)
-            for check, failure in failed.items()
+            # Finite, or not where finite numbers were expected.
+            Failure(check, one.guess, not _odd(one.finding.actual) or _odd(one.finding.expected), one.looked)
+            for check, one in failed.items()
         ]
         wrong = sums and not is_right(self._table, name, sums)
         fits = matching(self._table, name, sums) if sums and wrong else ()
         return story_of(failures, fits, self._words, kept=kept)
-
-
-def _culprits(task: str, callers: Mapping[str, tuple[str, ...]], wrong: set[str]) -> list[str]:
-    """The wrong functions that a task calls: those that call no wrong one themselves, if there are any."""
-    called = [name for name in callers.get(task, ()) if name in wrong]
-    return [name for name in called if wrong.isdisjoint(callers.get(name, ()))] or called
 
 
 def _kept(past: list[Past], task: str, again: Again) -> bool:
@@ -216,33 +205,19 @@ def _retold(
     if culprits:
         # Of several, which one this check's number comes from is not known.
         names = " and ".join(", ".join(f"`{name}`" for name in culprits).rsplit(", ", 1))
-        many = len(culprits) > 1
-        wrong, right = (
-            ("which are wrong: fix them first", "are") if many else ("which is wrong: fix that first", "is")
-        )
-        return msgspec.structs.replace(
-            check,
-            diagnosis=CASCADE,
-            message=f"{message} `{task}` calls your {names}, {wrong}.",
-            help=f"Check again when {names} {right} right; what is left then is `{task}`'s own.",
-        )
+        are, them = ("are", "them") if len(culprits) > 1 else ("is", "that")
+        message = f"{message} `{task}` calls your {names}, which {are} wrong: fix {them} first."
+        advice = f"Check again when {names} {are} right; what is left then is `{task}`'s own."
+        return msgspec.structs.replace(check, diagnosis=CASCADE, message=message, help=advice)
     diagnosis: Diagnosis | None = None if check.id in story.bare else story.diagnosis
     if diagnosis is None:
         return msgspec.structs.replace(check, diagnosis=None, message=message, help=advice)
-    return msgspec.structs.replace(
-        check,
-        diagnosis=diagnosis.code,
-        message=said_once(message, diagnosis.looks_like),
-        help=diagnosis.advice or advice,
-    )
-
-
-def _finite(finding: Finding) -> bool:
-    """Whether the compared values are finite where finite numbers were expected."""
-    return not _odd(finding.actual) or _odd(finding.expected)
+    message, advice = said_once(message, diagnosis.looks_like), diagnosis.advice or advice
+    return msgspec.structs.replace(check, diagnosis=diagnosis.code, message=message, help=advice)
 
 
 def _odd(value: Any) -> bool:
+    """Whether a number in it is nan or infinite."""
     return any(isinstance(item, float) and not math.isfinite(item) for item in leaves(value))
 
 
@@ -260,11 +235,8 @@ _SAME = {"rtol": 1e-9, "atol": 1e-12}
 
 
 class Again:
-    """Asks a submission again, in two workers of its own that all of its tasks share.
-
-    Args:
-        anew: loads the submission in another worker.
-    """
+    """Asks a submission again, in two workers of its own that all of its tasks share; ``anew`` loads it in
+    one."""
 
     def __init__(self, anew: Callable[[], RemoteSubmission]) -> None:
         self._anew = anew
@@ -279,14 +251,10 @@ class Again:
             self._workers.popitem()[1].close()
 
     def depends_on_the_past(self, heard: Sequence[Heard], task: str, patience: float) -> bool:
-        """Whether calls give something else in the opposite order.
+        """Whether calls give something else in the opposite order, each time within so much CPU time, s.
 
-        A function that draws numbers of its own, or measures a time, gives something else every time: it is
-        asked twice, and nothing is said of it.
-
-        Args:
-            heard: calls of functions, in order.
-            patience: seconds of CPU time for each of the two times.
+        A function that draws numbers of its own, or measures a time, gives something else every time: it
+        is asked twice, and nothing is said of it.
         """
         asked = heard[: -_MOST - 1 : -1]
         first = self._values(0, asked, task, patience)

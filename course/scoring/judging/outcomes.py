@@ -58,13 +58,8 @@ def found(check: Check, status: Status, finding: Finding, duration_ms: float, **
 
 
 def skipped(check: Check, blocking: str) -> CheckResult:
-    return result(
-        check,
-        Status.SKIP,
-        blocked_by=blocking,
-        message="Not run: it builds on a check that did not pass.",
-        help="Repair that one first.",
-    )
+    message, advice = "Not run: it builds on a check that did not pass.", "Repair that one first."
+    return result(check, Status.SKIP, blocked_by=blocking, message=message, help=advice)
 
 
 def told_more(
@@ -74,13 +69,11 @@ def told_more(
     args: tuple[Any, ...] | None = None,
     fact: str | None = None,
 ) -> CheckResult:
-    """The result of a failed check with what its student's code, or the numbers below it, show beyond doubt.
+    """The result of a failed check with what its student's code, or the numbers below it, show beyond
+    doubt.
 
-    Only where no mistake is named. Numbers are compared where they are shown, so of public checks alone.
-
-    Args:
-        args: of the call that raised.
-        fact: what several numbers of the check have in common, in the place of what one shows.
+    Only where no mistake is named. Numbers are compared where they are shown, so of public checks alone;
+    ``fact`` is what several of the check have in common, and ``args`` are those of the call that raised.
     """
     public = judged.visibility is Visibility.PUBLIC
     if args and judged.input is None and public:
@@ -103,23 +96,19 @@ def told_more(
 
 
 def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
-    """The finding where the check's own code raised an exception on the submission's value.
-
-    Args:
-        returned: name and value of the function that returned last; None if none did.
-        proven: the same check passes the model solution, so it is the value that is out of the ordinary.
-    """
+    """The finding where the check's own code raised an exception on what the function returned that
+    returned last. ``proven``: the check passes the model solution, so it is the value that is out of the
+    ordinary."""
     what = f"what `{returned[0]}` returned: {kind_of(returned[1])}" if returned else "this submission"
-    doubt = (
-        "" if proven else " There is no model solution here to tell whether the value or the check is wrong."
-    )
+    message = f"This check could not judge {what}."
     advice = (
         "The README says what to return, and what each part is. Call the function yourself and "
         "print the result: is every number finite, and of an ordinary size?"
     )
     if not proven:
+        message += " There is no model solution here to tell whether the value or the check is wrong."
         advice += " If all is as the README says, report the check to your instructor."
-    return Finding(message=f"This check could not judge {what}.{doubt}", help=advice, diagnosis=NOT_JUDGED)
+    return Finding(message, advice, NOT_JUDGED)
 
 
 def load_problem(refused: LoadRefusedError, places: Places, exercise: str) -> Problem:
@@ -130,37 +119,25 @@ def load_problem(refused: LoadRefusedError, places: Places, exercise: str) -> Pr
         return Problem("syntax_error", *_unreadable(refused, where, exercise))
     if refused.stage == "timeout":
         loop = " The loop that begins on that line was still running." if failure.type == LOOP else ""
-        return Problem(
-            "import_timeout",
-            f"{where}: it did not finish loading in time.{loop}",
-            "Move work out of the top level of the file, into functions.",
-        )
+        advice = "Move work out of the top level of the file, into functions."
+        return Problem("import_timeout", f"{where}: it did not finish loading in time.{loop}", advice)
     if refused.stage == "import" and failure.type == "ImportNotDeclaredError":
-        return Problem(
-            "import_error",
-            f"{where}: {failure.message}.",
-            absent(failure, refused.code)
-            or "Take it out. Plots and experiments belong in a file of your own that imports this one.",
-        )
+        advice = "Take it out. Plots and experiments belong in a file of your own that imports this one."
+        advice = absent(failure, refused.code) or advice
+        return Problem("import_error", f"{where}: {failure.message}.", advice)
     if refused.stage == "import":
         said = f": {failure.message.rstrip(' .')}" if failure.message else ""
-        return Problem(
-            "import_error",
-            ended(f"{where}: loading it raises {failure.type}{said}"),
-            lacking(failure, refused.code) or "Make that line work when the file is loaded, or take it out.",
-        )
+        advice = lacking(failure, refused.code)
+        advice = advice or "Make that line work when the file is loaded, or take it out."
+        return Problem("import_error", ended(f"{where}: loading it raises {failure.type}{said}"), advice)
     message = f"{module} ends its process while it is loaded ({failure.message})."
-    return Problem(
-        "import_crash", message, "Remove what exits, kills or exhausts the process at the top level."
-    )
+    advice = "Remove what exits, kills or exhausts the process at the top level."
+    return Problem("import_crash", message, advice)
 
 
 def left_out_notes(remote: RemoteSubmission, places: Places, tasks: Collection[str]) -> list[str]:
-    """What of a file was left out so that the rest could be checked, a sentence each.
-
-    Args:
-        tasks: the exercise's functions: of one that is no Python its checks tell.
-    """
+    """What of a file was left out so that the rest could be checked, a sentence each. Of a task that is no
+    Python its checks tell."""
     notes = []
     missing = frozenset(tasks) - frozenset(remote.functions)
     if remote.without is not None:
@@ -237,12 +214,9 @@ def _unreadable(refused: LoadRefusedError, where: str, exercise: str) -> tuple[s
 
 
 def no_functions(exercise: Exercise) -> Problem:
+    message = f"{exercise.module} defines none of the functions of this exercise."
     names = ", ".join(task.id for task in exercise.task)
-    return Problem(
-        "no_declared_functions",
-        f"{exercise.module} defines none of the functions of this exercise.",
-        f"Keep the names the stub gave: {names}.",
-    )
+    return Problem("no_declared_functions", message, f"Keep the names the stub gave: {names}.")
 
 
 # -- functions as they were handed out -----------------------------------------------------------------------

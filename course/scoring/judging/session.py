@@ -45,19 +45,9 @@ from course.scoring.failures import (
     finding_for,
     finding_of,
 )
+from course.scoring.judging import outcomes
 from course.scoring.judging.explaining import Again, Explainer
-from course.scoring.judging.outcomes import (
-    found,
-    left_out_notes,
-    load_problem,
-    no_functions,
-    result,
-    skipped,
-    to_do,
-    told_more,
-    unjudged,
-    untouched,
-)
+from course.scoring.judging.outcomes import found, load_problem, result
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import Heard, RemoteSubmission
 from course.scoring.verdict import OURS, CheckResult, Places, Problem, Status, Verdict, Visibility, bounded
@@ -76,7 +66,6 @@ class GradingSession:
 
     Args:
         scope: "public" for the checks a student has, "full" for the hidden ones too.
-        terms: protection level, deadline and seed.
         processor: picks the processor to stay on; None picks any.
 
     Attributes:
@@ -169,18 +158,16 @@ class GradingSession:
             remote = self._load(submission)
         except LoadRefusedError as refused:
             self.printed = beginning(refused.printed, _PRINTED)
-            return self._verdict(
-                "ungradable", error=load_problem(refused, self._places(submission), self.exercise.id)
-            )
+            problem = load_problem(refused, self._places(submission), self.exercise.id)
+            return self._verdict("ungradable", error=problem)
         except IsolationError as error:
             return self._grader_error(str(error))
         try:
             if not any(task.id in remote.functions for task in self.exercise.task):
                 return self._verdict("ungradable", error=self._nothing_loaded(remote, submission))
             self._remote = remote
-            left_out = left_out_notes(
-                remote, self._places(submission), [task.id for task in self.exercise.task]
-            )
+            tasks = [task.id for task in self.exercise.task]
+            left_out = outcomes.left_out_notes(remote, self._places(submission), tasks)
             self.printed = beginning(remote.printed(), _PRINTED)
             results = self._run(remote, only, submission)
         except IsolationError as error:
@@ -190,7 +177,7 @@ class GradingSession:
             with contextlib.suppress(IsolationError):
                 remote.close()
         if self._terms.home and len(self.exercise.task) > 1:
-            results = to_do(results, untouched(self.exercise, submission))
+            results = outcomes.to_do(results, outcomes.untouched(self.exercise, submission))
         verdict = self._graded(results)
         if not self._terms.home:
             left_out += [
@@ -204,17 +191,13 @@ class GradingSession:
         """Why none of the functions is there."""
         fault = next((one for one in remote.faults if one.stage in {"syntax", "import"}), None)
         if fault is None:
-            return no_functions(self.exercise)
+            return outcomes.no_functions(self.exercise)
         refused = LoadRefusedError(fault.stage, fault.failure, fault.text, fault.code)
         return load_problem(refused, self._places(submission), self.exercise.id)
 
     def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
         """The result of ``use`` on a submission, loaded as for a check; one deadline applies to all of it.
-
-        Raises:
-            UngradableError: it cannot be loaded.
-            InternalError: the sandbox broke.
-        """
+        UngradableError if it cannot be loaded, InternalError if the sandbox broke."""
         with pinned_to(self._processor):
             try:
                 remote = self._load(submission)
@@ -251,9 +234,11 @@ class GradingSession:
         self, remote: RemoteSubmission, only: Collection[str], submission: Submission
     ) -> list[CheckResult]:
         places = self._places(submission)
+        wanted = set(only)
         ordered = self._checks.in_order()
         if only:
-            wanted = _with_required(only, ordered)
+            for check in reversed(ordered):  # each comes after those it requires
+                wanted.update(check.requires if check.id in wanted else ())
             ordered = [check for check in ordered if check.id in wanted]
         source = submission.files[self.exercise.module]
         results: dict[str, CheckResult] = {}
@@ -261,17 +246,17 @@ class GradingSession:
         for kept in of_this_run:
             kept.clear()
         for check in ordered:
-            blocking = next(
-                (name for name in check.requires if results[name].status is not Status.PASS), None
+            blocking = [name for name in check.requires if results[name].status is not Status.PASS]
+            results[check.id] = (
+                outcomes.skipped(check, blocking[0]) if blocking else self._run_one(check, remote, places)
             )
-            results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote, places)
         if self._explainer is not None and self._failed:
             with Again(lambda: self._load(submission)) as again:
                 self._explainer.explain(results, self._failed, remote, source, self._heard, again)
         for name, judged in results.items():
             if judged.status in {Status.FAIL, Status.ERROR}:
                 fact = self._common(judged, remote)
-                results[name] = told_more(judged, source, places, self._raised.get(name), fact)
+                results[name] = outcomes.told_more(judged, source, places, self._raised.get(name), fact)
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
@@ -313,7 +298,7 @@ class GradingSession:
         if proven is False:
             message = ON_THE_MODEL + where
             return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
-        finding = unjudged(remote.returned, proven=bool(proven))
+        finding = outcomes.unjudged(remote.returned, proven=bool(proven))
         return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
 
     def _common(self, judged: CheckResult, remote: RemoteSubmission) -> str | None:
@@ -339,8 +324,7 @@ class GradingSession:
         if not self._terms.home:
             return
         curve = compared(*failed.comparison) if failed.comparison else None
-        if curve is None and remote.marched:
-            curve = marched(*remote.marched)
+        curve = curve or (marched(*remote.marched) if remote.marched else None)
         if curve is not None:
             self.curves[check.id] = curve
 
@@ -397,11 +381,8 @@ class GradingSession:
 
 
 def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tuple[Path, Visibility]]:
-    """The files whose checks a scope runs.
-
-    Raises:
-        MissingCapabilityError: the full scope needs hidden checks and model solutions; one is not here.
-    """
+    """The files whose checks a scope runs; MissingCapabilityError where hidden checks or model solutions
+    are not here."""
     files = [(exercise.checks_path, Visibility.PUBLIC)]
     if scope == "full":
         _, graders = catalog.content.instructors()
@@ -432,11 +413,9 @@ def _open(imports: tuple[str, ...], terms: Terms, processor: int | None) -> tupl
     try:
         return open_sandbox(imports, at_least=lowest, at_most=highest, processor=processor)
     except IsolationError as error:
-        raise MissingCapabilityError(
-            f"This machine cannot run submissions at protection level {lowest}: {error}.",
-            help="`course doctor` says what would raise the level.",
-            code="protection_level",
-        ) from None
+        message = f"This machine cannot run submissions at protection level {lowest}: {error}."
+        advice = "`course doctor` says what would raise the level."
+        raise MissingCapabilityError(message, help=advice, code="protection_level") from None
 
 
 def _choose(processor: int | None) -> int | None:
@@ -465,18 +444,6 @@ def pinned_to(processor: int | None) -> Iterator[None]:
         os.sched_setaffinity(0, before)
 
 
-def _with_required(only: Collection[str], checks: list[Check]) -> set[str]:
-    by_id = {check.id: check for check in checks}
-    wanted: set[str] = set()
-    left = list(only)
-    while left:
-        name = left.pop()
-        if name not in wanted:
-            wanted.add(name)
-            left += by_id[name].requires
-    return wanted
-
-
 # ---
 # The report of an exercise: its ``report.py``, run on a submission through the boundary of the checks.
 
@@ -490,19 +457,12 @@ def has_report(exercise: Exercise) -> bool:
 
 
 def report_of(exercise: Exercise, catalog: Catalog, submission: Submission) -> Report:
-    """The report on a submission.
-
-    Raises:
-        NotFoundError: the exercise has no report.
-        UngradableError: the submission cannot be loaded, or ended the report.
-        MissingCapabilityError: no submission can be run on this machine.
-    """
+    """The report on a submission. NotFoundError: the exercise has none; UngradableError: the submission
+    cannot be loaded, or ended it; MissingCapabilityError: none can be run on this machine."""
     if not has_report(exercise):
-        raise NotFoundError(
-            f"The exercise {exercise.id} has no report.",
-            help=f"See what its checks say: course check {exercise.id}",
-            code="report_not_found",
-        )
+        message = f"The exercise {exercise.id} has no report."
+        advice = f"See what its checks say: course check {exercise.id}"
+        raise NotFoundError(message, help=advice, code="report_not_found")
     module = companion(exercise.id, FILE.removesuffix(".py"))
     try:
         with GradingSession(exercise, catalog, terms=Terms(timeout=60.0)) as session:

@@ -143,13 +143,7 @@ _LONGEST_NAME = 120
 
 
 def render(template: str, **words: Any) -> str:
-    """A page.
-
-    Args:
-        template: its name, without the end ``.html.j2``.
-        words: what it shows. All text is literal: it contains no markup, and cannot hide or reorder other
-            text.
-    """
+    """A page. All text in it is literal: it contains no markup, and cannot hide or reorder other text."""
     return _environment().get_template(f"{template}.html.j2").render(words)
 
 
@@ -278,12 +272,8 @@ _LEVELS = {
 
 
 def class_page(results: Results, tally: Tally, links: Mapping[str, str], index: str) -> str:
-    """The whole page.
-
-    Args:
-        links: student -> address of the student's page.
-        index: address of the list of students.
-    """
+    """The whole page; ``links`` has the address of each student's page, ``index`` that of the list of
+    students."""
     begun = [item for item in tally.exercises.values() if item.results]
     sections = [
         ("exercises", "Exercises"),
@@ -328,15 +318,13 @@ def _facts(tally: Tally) -> list[tuple[int, str, str]]:
         (sum(len(item.scores) for item in every), "graded results", ""),
         (sum(item.passed for item in every), "of them pass", ""),
         (sum(item.ungraded for item in every), "could not be graded", "ungraded"),
-    ]
-    more = [
         (sum(item.waiting for item in every), "not graded yet: no run has looked at it", "exercises"),
         (sum(item.missing for item in every), "missing: nothing handed in", "exercises"),
         (sum(item.faults for item in every), "faults of the grader", "ungraded"),
         (tally.overrides.count, "scores set by hand", "overrides"),
         (tally.late.count, "handed in late", "late"),
     ]
-    return [*facts, *(fact for fact in more if fact[0])]
+    return [fact for at, fact in enumerate(facts) if at < 4 or fact[0]]
 
 
 def _middle(scores: Sequence[float]) -> tuple[str, str]:
@@ -440,11 +428,8 @@ _STATES = {
 
 @dataclass(frozen=True)
 class _Shown:
-    """A student's result in one exercise, as the page has it.
-
-    Attributes:
-        tasks: unsolved ones first; each with its checks, failed ones first.
-    """
+    """A student's result in one exercise, as the page has it: unsolved tasks first, and in each failed
+    checks."""
 
     title: str
     effective: Effective
@@ -528,15 +513,8 @@ def _gathered(checks: list[CheckResult]) -> list[CheckResult]:
         elif check.status is Status.PASS or not check.input is check.actual is check.stdout is None:
             alike[check.id] = [check]
         else:
-            told = (
-                check.status,
-                check.message,
-                check.help,
-                check.blocked_by,
-                check.traceback,
-                check.visibility,
-            )
-            alike.setdefault(told, []).append(check)
+            told = (check.status, check.message, check.help, check.blocked_by, check.traceback)
+            alike.setdefault((*told, check.visibility), []).append(check)
     return [_as_one(same) if len(same) > 1 else same[0] for same in alike.values()]
 
 
@@ -581,14 +559,8 @@ _PAGE = re.compile(r"[1-9][0-9]*\.html")
 
 
 def write_html(target: Path, results: Results, options: ExportOptions) -> Written:
-    """The page about the class, the list of students, and the students' pages beside it.
-
-    Args:
-        target: the page (``.html``), or the folder it goes into.
-
-    Raises:
-        UsageError: files are in the way that no export to this page made.
-    """
+    """The page about the class, at ``target`` or in that folder, the list of students, and the students'
+    pages beside it; a UsageError if files are in the way that no export to this page made."""
     selection = select(results, options)
     page = target.suffix.lower() in {".html", ".htm"} and not target.is_dir()
     path = target if page else target / "report.html"
@@ -602,12 +574,8 @@ def write_html(target: Path, results: Results, options: ExportOptions) -> Writte
 
 
 def _refuse_others(path: Path, students: int, *, named: bool) -> None:
-    """Refuse to replace or remove what no earlier export to this page made: its list of students links to it.
-
-    Args:
-        students: how many pages are numbered.
-        named: the user named the page itself, and not its folder.
-    """
+    """Refuse to replace or remove what no earlier export to this page made: its list of students links to
+    it. So many pages are numbered; ``named``: the user named the page itself, and not its folder."""
     listed, table, folder = (path.with_name(name) for name in ("students.html", "students.csv", "students"))
     numbered = [*folder.iterdir()] if folder.is_dir() else []
     pages = [page for page in numbered if _PAGE.fullmatch(page.name)]
@@ -629,15 +597,10 @@ def _link(path: Path) -> str:
 def write_pages(
     path: Path, results: Results, found: Iterable[Effective], exercises: Sequence[str]
 ) -> list[Path]:
-    """Write everything.
+    """Write everything: ``path`` is the page about the class, and the rest lies beside it.
 
-    Args:
-        path: of the page about the class; the rest lies beside it.
-        found: results ordered by student; those that have only an override may come at the end.
-        exercises: ids, in the order they are shown.
-
-    Returns:
-        The written paths: the class page, the list of students as a page and as a table, the folder of pages.
+    The results are ordered by student; those that have only an override may come at the end. What is
+    written is the class page, the list of students as a page and as a table, and the folder of pages.
     """
     noted = {item.id: item for item in results.exercises()}
     order = {name: at for at, name in enumerate(exercises)}
@@ -658,7 +621,12 @@ def write_pages(
     listed, table = path.with_name("students.html"), path.with_name("students.csv")
     chosen = [noted[name] for name in exercises]
     write_bytes(listed, index_page(results, shown, chosen, _link(path)).encode())
-    write_bytes(table, csv_bytes(("page", "student", "name", "email", *exercises), map(_cells, shown)))
+    cells = []
+    for row in shown:
+        person = (row.person.name, row.person.email) if row.person else ("", "")
+        scores = (number(score[0]) if score else "" for score in row.scores)
+        cells.append([row.href, row.student, *person, *scores])
+    write_bytes(table, csv_bytes(("page", "student", "name", "email", *exercises), cells))
     write_bytes(path, class_page(results, tally, links, _link(listed)).encode())
     _remove_others(folder, {f"{row.place}.html" for row in shown})
     return [path, listed, table, folder]
@@ -679,16 +647,9 @@ def _by_student(results: Results, found: Iterable[Effective]) -> Iterator[tuple[
     yield from ((student, group) for student, group in held.items() if group)
 
 
-def _cells(row: IndexRow) -> list[str]:
-    person = (row.person.name, row.person.email) if row.person else ("", "")
-    return [row.href, row.student, *person, *(number(score[0]) if score else "" for score in row.scores)]
-
-
 def _remove_others(folder: Path, written: set[str]) -> None:
     """Delete the pages of an earlier class: their numbers may belong to other students now."""
-    if not folder.is_dir():
-        return
-    for path in folder.iterdir():
+    for path in folder.iterdir() if folder.is_dir() else ():
         if _PAGE.fullmatch(path.name) and path.name not in written and _is_ours(path):
             with contextlib.suppress(OSError):
                 path.unlink()

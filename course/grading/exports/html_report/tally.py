@@ -22,12 +22,8 @@ _ADVICES = 20  # texts of advice that are counted per diagnosis
 
 @dataclass
 class CheckTally:
-    """How a check went, over all graded submissions that ran it.
-
-    Attributes:
-        latest: one of its results, for its words.
-        statuses: number of submissions by how it ended; "unwritten" where its function was not begun.
-    """
+    """How a check went, over all graded submissions that ran it; ``latest`` is one of its results, for its
+    words. A function that was not begun counts as "unwritten"."""
 
     latest: CheckResult
     statuses: Counter[str] = field(default_factory=Counter)
@@ -144,35 +140,25 @@ class ExerciseTally:
             if check.diagnosis and not check.unwritten:
                 codes.setdefault(check.diagnosis, []).append(check)
         for task, (points, most) in reached.items():
-            self._take_task(task, points, most)
+            sums_up = self.tasks.setdefault(task, TaskTally(self.exercise.id, task))
+            sums_up.points += points
+            sums_up.max_points += most
+            sums_up.submissions += 1
+            # Rounding of sums of points.
+            sums_up.full += points >= most - 1e-9
+            sums_up.none += points <= 1e-9
         for code, found in codes.items():
-            self._take_diagnosis(code, found)
-
-    def _take_task(self, task: str, points: float, most: float) -> None:
-        tally = self.tasks.setdefault(task, TaskTally(self.exercise.id, task))
-        tally.points += points
-        tally.max_points += most
-        tally.submissions += 1
-        # Rounding of sums of points.
-        tally.full += points >= most - 1e-9
-        tally.none += points <= 1e-9
-
-    def _take_diagnosis(self, code: str, found: Sequence[CheckResult]) -> None:
-        tally = self.diagnoses.setdefault(code, DiagnosisTally(self.exercise.id, code))
-        tally.students += 1
-        tally.tasks.update(dict.fromkeys(check.task for check in found))
-        for advice in {check.help for check in found if check.help}:
-            if advice in tally.advice or len(tally.advice) < _ADVICES:
-                tally.advice[advice] += 1
+            known = self.diagnoses.setdefault(code, DiagnosisTally(self.exercise.id, code))
+            known.students += 1
+            known.tasks.update(dict.fromkeys(check.task for check in found))
+            for advice in {check.help for check in found if check.help}:
+                if advice in known.advice or len(known.advice) < _ADVICES:
+                    known.advice[advice] += 1
 
 
 class CappedList:
-    """A list that shows a limited number of rows and counts all.
-
-    Args:
-        most: how many it shows.
-        by: shows those for which this is largest, the largest first; those that came first if None.
-    """
+    """A list that shows a limited number of rows and counts all: those for which ``by`` is largest, the
+    largest first, or those that came first."""
 
     def __init__(self, most: int = MOST_ROWS, by: Callable[[Effective], float] | None = None) -> None:
         self._most, self._by = most, by
@@ -196,16 +182,11 @@ class CappedList:
 
 
 class Tally:
-    """A class, counted.
+    """A class, counted over some exercises in the order of the course.
 
-    Args:
-        exercises: to count, in the order of the course.
-
-    Attributes:
-        troubled: without a grade, for any reason, with or without an instructor's score.
-        reasons: number of those by exercise, state and code.
-        untimed: number of results without a trusted submission time.
-        flagged: number of results that the download calls late, without saying by how much.
+    ``troubled`` are the results without a grade, for any reason, with or without an instructor's score;
+    ``reasons`` their number by exercise, state and code. ``untimed`` have no trusted time, and ``flagged``
+    are called late by the download, without saying by how much.
     """
 
     def __init__(self, exercises: Iterable[GradedExercise]) -> None:
@@ -232,15 +213,12 @@ class Tally:
             if effective.override is not None:
                 self.overrides.take(effective)
             if effective.result.number:
-                self._take_time(effective)
+                if effective.late is not None:
+                    self.late.take(effective)
+                    self.penalised += effective.penalty > 0
+                self.untimed += effective.submitted_at is None
+                self.flagged += effective.flagged_late
                 self._take_grading(effective)
-
-    def _take_time(self, effective: Effective) -> None:
-        if effective.late is not None:
-            self.late.take(effective)
-            self.penalised += effective.penalty > 0
-        self.untimed += effective.submitted_at is None
-        self.flagged += effective.flagged_late
 
     def _take_grading(self, effective: Effective) -> None:
         verdict, at = effective.verdict, effective.result.graded_at
@@ -265,10 +243,8 @@ class Tally:
     @property
     def hardest(self) -> list[TaskTally]:
         """Tasks by the share of points they gave, the smallest first; questions of a quiz are no tasks."""
-        exercises = [item for item in self.exercises.values() if not item.is_quiz]
-        return sorted(
-            (task for item in exercises for task in item.tasks.values()), key=lambda task: task.share
-        )
+        tasks = (one for item in self.exercises.values() if not item.is_quiz for one in item.tasks.values())
+        return sorted(tasks, key=lambda task: task.share)
 
     @property
     def commonest(self) -> list[DiagnosisTally]:

@@ -24,7 +24,7 @@ from course.grading.cluster.coordinator import LostBatch, Outcome, grade_on
 from course.grading.cluster.worker import FORMAT, Answers, Batch, decode, encode
 from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded
-from course.grading.running.grader import Answer, Job
+from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import Snapshot, in_use
 from course.scoring.graders import grader_version
 from course.scoring.judging.session import GradingSession
@@ -386,16 +386,24 @@ def test_a_worker_with_other_graders_refuses_before_it_grades(
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="processes are not kept on processors here")
-def test_graders_on_one_machine_take_different_processors() -> None:
-    one, first = worker._take_seat()
-    two, second = worker._take_seat()
-    assert second is not None
+def test_graders_on_one_machine_take_different_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[int] = []
+
+    def start(config: Config) -> Any:
+        started.append(config.processor)
+        raise OSError
+
+    monkeypatch.setattr(worker, "start_grader", start)
+    graders = [worker._WarmGrader(Config(Terms(), 0)) for _ in range(2)]
+    for grader in (*graders, graders[0]):
+        grader.close()
+        with pytest.raises(OSError):
+            grader.answer(Job("doubling", {}))
+    one, two, again = started
     assert one != two
-    first.close()
-    again, third = worker._take_seat()
     assert again == one
-    for seat in (second, third):
-        seat.close()
+    for grader in graders:
+        grader.close()
 
 
 # -- the command --------------------------------------------------------------------------------------------

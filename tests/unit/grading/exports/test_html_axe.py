@@ -1,5 +1,6 @@
 """The pages in a real browser: axe-core's rules, in light and dark, on a desk and on a phone."""
 
+import contextlib
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -70,7 +71,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def likeness() -> Similar:
     """Two copies under hostile names, and what could not be read."""
-    with Parser() as parse:
+    with contextlib.closing(Parser()) as parse:
         one, two = (
             Document(name, source, parse(source.encode()))
             for name, source in ((HOSTILE[0], _ORIGINAL), ("Ada\u202eevoL", _COPY))

@@ -313,7 +313,7 @@ def test_what_is_left_out_is_told_within_bounds(doubling: Exercise) -> None:
 
 
 def test_an_escaped_line_end_in_a_string_moves_no_magic() -> None:
-    from course.handed_in.cells import typed_cell
+    from course.handed_in.notebook import typed_cell
 
     cell = typed_cell(1, "a = 'one \\\n two'\n%magic\nb = 1\n")
     assert cell.dropped == ((3, "%magic"),)

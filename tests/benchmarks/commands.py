@@ -5,8 +5,6 @@
 Run it with the Python of an environment the course is installed in. The two sides of each figure alternate.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import statistics

@@ -10,8 +10,6 @@ With --diagnosis the two sides are a protected grading with diagnoses and one wi
 mutants of an exercise, each handed in again and again as one common mistake would be.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import statistics

@@ -1,7 +1,5 @@
 """What the README promises at first sight: its pictures, its four lines, its length."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from pathlib import Path

@@ -29,7 +29,7 @@ socket.create_connection = socket.getaddrinfo = _refused
 """
 
 
-def ran(kind: str, name: str, more: str = "") -> list[dict[str, Any]]:
+def ran(kind, name, more=""):
     """The cells of a notebook after a run; ``more`` is one more cell at its end."""
     (one,) = [made for made in generate(CATALOG, [name]) if made.kind == kind]
     notebook = json.loads(one.data)
@@ -40,12 +40,12 @@ def ran(kind: str, name: str, more: str = "") -> list[dict[str, Any]]:
     return cells
 
 
-def printed(cell: dict[str, Any]) -> str:
+def printed(cell):
     return "".join("".join(one["text"]) for one in cell["outputs"] if one["output_type"] == "stream")
 
 
 @pytest.mark.parametrize("name", CATALOG.lesson_ids())
-def test_a_lesson_runs_and_its_numbers_are_those_of_its_text(name: str) -> None:
+def test_a_lesson_runs_and_its_numbers_are_those_of_its_text(name):
     blocks = read_blocks(CATALOG.content.lessons / f"{name}.md")
     values = [value for _, value in b.walk_inlines(blocks) if isinstance(value, b.Value)]
     expressions = ", ".join(f"({value.expression})" for value in values)
@@ -71,7 +71,7 @@ def test_a_lesson_runs_and_its_numbers_are_those_of_its_text(name: str) -> None:
     ("kind", "name"),
     [*(("exercise", name) for name in CATALOG.exercise_ids()), ("quiz", "quiz"), ("sandbox", "sandbox")],
 )
-def test_an_exercise_quiz_or_sandbox_runs(kind: str, name: str) -> None:
+def test_an_exercise_quiz_or_sandbox_runs(kind, name):
     cells = ran(kind, name)
     shown = [cell for cell in cells if cell.get("outputs")]
     assert shown

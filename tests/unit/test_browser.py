@@ -1,7 +1,5 @@
 """Nothing is opened where there is no display, and what would have been opened is named."""
 
-from __future__ import annotations
-
 import webbrowser
 
 import pytest
@@ -12,11 +10,11 @@ from course import browser
 class Stand:
     """A browser that notes what it is asked to show."""
 
-    def __init__(self, basename: str) -> None:
+    def __init__(self, basename):
         self.basename = basename
         self.shown: list[str] = []
 
-    def open(self, address: str) -> bool:
+    def open(self, address):
         self.shown.append(address)
         return True
 

@@ -1,7 +1,5 @@
 """PhysX 5 on the processor through sapien. Two materials' coefficients are averaged."""
 
-from __future__ import annotations
-
 import warnings
 
 import measures

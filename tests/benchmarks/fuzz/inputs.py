@@ -1,7 +1,5 @@
 """Inputs nobody would hand in, made from a generator of random numbers: the same numbers, the same input."""
 
-from __future__ import annotations
-
 import io
 import json
 import random

@@ -11,8 +11,6 @@ student by student and on all at once. Scores are compared: whoever grades faste
 A peer takes some ten wall seconds a submission, longer on a busy machine; CPU is hardly touched by that.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import csv

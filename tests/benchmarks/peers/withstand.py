@@ -13,8 +13,6 @@ Linux only: who is running is read from /proc. Writes peers.json and peers.md to
 has from earlier runs stays until it is tried again, and stands in both tables.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import json

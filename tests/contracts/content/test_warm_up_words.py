@@ -1,7 +1,5 @@
 """Every wrong program that a warm-up knows of fails a check and is told one of its own mistakes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -33,12 +31,12 @@ AS_TRUE = {
 
 
 @pytest.fixture(scope="module")
-def catalog() -> Catalog:
+def catalog():
     return Catalog()
 
 
 @pytest.mark.parametrize("warm_up", Catalog().warm_up_ids())
-def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog: Catalog, warm_up: str) -> None:
+def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog, warm_up):
     exercise = catalog.exercise(warm_up)
     checks = CollectedChecks(check_files(exercise, catalog, "public"), draws=False)
     model = (solutions_folder(catalog, exercise) / exercise.module).read_text(encoding="utf-8")

@@ -1,7 +1,5 @@
 """A comparison measures what it can, remembers it, and says what it could not do."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import pytest

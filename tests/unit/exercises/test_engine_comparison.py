@@ -3,8 +3,6 @@
 What known wrong programs are told is in ``solutions/engine-comparison/record.json``, which the audit keeps.
 """
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import math

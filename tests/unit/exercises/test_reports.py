@@ -1,7 +1,5 @@
 """What ``course report`` makes of an exercise: the words and rows follow the program, right or wrong."""
 
-from __future__ import annotations
-
 import functools
 import re
 

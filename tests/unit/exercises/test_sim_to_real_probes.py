@@ -3,8 +3,6 @@
 What known wrong programs are told is in ``solutions/sim-to-real/record.json``, which the audit keeps.
 """
 
-from __future__ import annotations
-
 import ast
 import math
 import re

@@ -1,7 +1,5 @@
 """An SDF world run in DART, the engine of Gazebo Sim, built joint by joint; Gazebo itself is not here."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from xml.etree import ElementTree as ET
@@ -10,7 +8,7 @@ import dartpy as dart
 import numpy as np
 
 
-def ends(world_file: bytes, seconds: float) -> dict[str, np.ndarray]:
+def ends(world_file, seconds):
     """Where each moving link is after a time, (x, y, z) in m."""
     described = ET.fromstring(world_file).find("world")
     world = dart.simulation.World()
@@ -27,7 +25,7 @@ def ends(world_file: bytes, seconds: float) -> dict[str, np.ndarray]:
     return {name: link.getWorldTransform().translation() for name, link in links.items()}
 
 
-def standing(model: ET.Element):
+def standing(model):
     skeleton = dart.dynamics.Skeleton(model.get("name"))
     for link in model.iterfind("link"):
         joint, body = skeleton.createWeldJointAndBodyNodePair()
@@ -36,7 +34,7 @@ def standing(model: ET.Element):
     return skeleton
 
 
-def jointed(model: ET.Element, links: dict[str, object]):
+def jointed(model, links):
     """A tree of joints, each with its axis turned from the model's frame into its own, and its velocity."""
     skeleton = dart.dynamics.Skeleton(model.get("name"))
     described = {link.get("name"): link for link in model.iterfind("link")}
@@ -69,7 +67,7 @@ def jointed(model: ET.Element, links: dict[str, object]):
     return skeleton
 
 
-def shape(link: ET.Element, body) -> None:
+def shape(link, body):
     for collision in link.iterfind("collision"):
         form = collision.find("geometry")[0]
         if form.tag == "sphere":
@@ -87,7 +85,7 @@ def shape(link: ET.Element, body) -> None:
         surface.setRestitutionCoeff(float(collision.findtext("surface/bounce/restitution_coefficient")))
 
 
-def placed(element: ET.Element):
+def placed(element):
     """The pose of an element: turns about x, then y, then z, as SDF has it; only pitch and roll occur."""
     x, y, z, roll, pitch, yaw = numbers(element.findtext("pose") or "0 0 0 0 0 0")
     assert yaw == 0.0
@@ -98,5 +96,5 @@ def placed(element: ET.Element):
     return found
 
 
-def numbers(text: str) -> np.ndarray:
+def numbers(text):
     return np.array([float(word) for word in text.split()])

@@ -3,9 +3,6 @@
 import re
 import signal
 import time
-from collections.abc import Awaitable, Callable
-from pathlib import Path
-from typing import Any
 
 import pytest
 from textual.events import Key
@@ -18,8 +15,6 @@ from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.asking import Edit
 from course.cli.reading.screen.items import CellItem, FigureItem, keys_of
 from course.full_screen import fitting
-from course.progress.workspace import Workspace
-from course.reading.parts import Cell
 from course.reading.record import Place
 from tests.unit.cli.reading.conftest import CATALOG, drive, screen, settled
 
@@ -28,21 +23,14 @@ LESSON, LESSONS = "numerical-integration", CATALOG.lesson_ids()
 KEY_S = 0.05
 
 
-def reading(
-    journey: Callable[[ReaderApp, Any], Awaitable[None]],
-    *,
-    size: tuple[int, int] = (80, 24),
-    lesson: str = LESSON,
-    workspace: Workspace | None = None,
-    section: str = "",
-) -> ReaderApp:
+def reading(journey, *, size=(80, 24), lesson=LESSON, workspace=None, section=""):
     """Open a lesson, do what ``journey`` does, leave."""
     app = ReaderApp(CATALOG, lesson, section, workspace)
     drive(app, journey, size)
     return app
 
 
-async def ran(app: ReaderApp, pilot: Any) -> None:
+async def ran(app, pilot):
     """Until the cell has ended."""
     for _ in range(1500):
         await pilot.pause(0.02)
@@ -52,17 +40,16 @@ async def ran(app: ReaderApp, pilot: Any) -> None:
     pytest.fail("the cell never ended")
 
 
-def everything(app: ReaderApp) -> str:
+def everything(app):
     """The whole page, also above and below the screen."""
-    assert app.page.book is not None
     return "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
 
 
-def figures_of(app: ReaderApp) -> list[int]:
+def figures_of(app):
     return [i for i, one in enumerate(app.page.progress.script.blocks) if isinstance(one, b.Figure)]
 
 
-async def to_cell(app: ReaderApp, pilot: Any) -> Cell:
+async def to_cell(app, pilot):
     """The first cell of the lesson, at hand: its prediction is skipped."""
     cell = app.page.progress.script.shown_cells[0]
     await to_question(app, pilot)
@@ -72,7 +59,7 @@ async def to_cell(app: ReaderApp, pilot: Any) -> Cell:
     return cell
 
 
-async def editing(app: ReaderApp, pilot: Any) -> Cell:
+async def editing(app, pilot):
     """The first cell of the lesson, in the editor."""
     cell = await to_cell(app, pilot)
     await pilot.press("e")
@@ -80,12 +67,12 @@ async def editing(app: ReaderApp, pilot: Any) -> Cell:
     return cell
 
 
-def below(app: ReaderApp) -> str:
+def below(app):
     """What a box says at its lower edge."""
     return app.screen.query_one(".box").border_subtitle
 
 
-async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
+async def to_question(app, pilot, number=1):
     question = app.page.progress.script.questions[number - 1]
     app._chosen(f"block:{question.index}")
     await pilot.pause()
@@ -529,7 +516,7 @@ def test_the_code_of_a_cell_is_printed_as_it_is_in_the_lesson(capsys):
     assert run(["lesson", LESSON, "--code", "99"]) == 5
 
 
-def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
+def test_a_file_that_is_there_is_not_overwritten(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / f"{LESSON}-1.py").write_text("mine")
 
@@ -576,8 +563,8 @@ def test_what_stands_for_a_closed_answer_is_on_no_screen_of_its_own():
     reading(journey, size=(120, 40))
 
 
-def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut() -> None:
-    async def look(app: ReaderApp, pilot: Any) -> None:
+def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut():
+    async def look(app, pilot):
         page, book = app.page, app.page.book
         assert book is not None
         cut = page.end()
@@ -589,7 +576,7 @@ def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut() 
     reading(look, size=(40, 20), section="worked-example-one-step-by-hand")
 
 
-def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all() -> None:
+def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all():
     keys = "r run   e change   u undo   c copy   w write   Space on   ? keys"
     assert fitting(keys, 100) == keys
     assert fitting(keys, 38, more="? keys") == "r run   e change   u undo   ? keys"

@@ -4,7 +4,6 @@ import re
 import shutil
 import textwrap
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -120,7 +119,7 @@ def test_a_wrong_program_that_is_known_by_its_answers_is_told_the_words_of_its_c
 
 def test_the_figure_of_the_page_can_be_drawn_and_read(tmp_path, monkeypatch):
     (source,) = blocks("figure")
-    module: dict[str, Any] = {}
+    module = {}
     exec(source, module)
     monkeypatch.setitem(registry.FIGURES, "contact-bounce", ("contact", "bounce"))
     monkeypatch.setattr(contact, "bounce", module["bounce"], raising=False)
@@ -142,16 +141,7 @@ def test_every_name_of_the_kit_is_on_the_page():
     assert named - set(kit.__all__) == set()
     assert set(kit.__all__) - named == set()
     # What is used with others is told in a sentence; whatever stands alone has an example that is run.
-    told = {
-        "Words",
-        "fail",
-        "finding_for",
-        "in_range",
-        "known_answers",
-        "reference",
-        "sibling",
-        "words",
-    }
+    told = {"Words", "fail", "finding_for", "in_range", "known_answers", "reference", "sibling", "words"}
     types = {name for name in kit.__all__ if name[0].isupper()} - {
         "Diagnosis",
         "Problem",

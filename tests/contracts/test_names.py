@@ -29,7 +29,7 @@ def _module(path):
 
 def _bound(tree):
     """What a module or a class binds, wherever in it; an attribute that a method sets is one, too."""
-    found: dict[str, ast.AST] = {}
+    found = {}
     for node in ast.walk(tree):
         match node:
             case ast.ClassDef(name=name) | ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):

@@ -91,7 +91,7 @@ def test_what_comes_in_turn_comes_once_in_its_days(monkeypatch):
     )
     always = [_Item("a::other"), _Item("a::one_more[1]"), *(_Item(f"a::many[{n}]", long=True) for n in "xyz")]
     turns = [*(_Item(f"a::many[{n}]") for n in range(10)), _Item("a::one")]
-    seen: list[_Item] = []
+    seen = []
     for day in range(363, 367):
         later = of_other_days([*always, *turns], day)
         today = [item for item in turns if item not in later]

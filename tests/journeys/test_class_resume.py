@@ -124,7 +124,7 @@ def said(log):
 
 def rounds(kinds):
     """Deaths by the attempt in which they happen: that of a coordinator ends one."""
-    found: list[list[str]] = [[]]
+    found = [[]]
     for kind in kinds:
         found[-1].append(kind)
         if kind == "coordinator":
@@ -148,7 +148,7 @@ class Gate:
         self._scratch = out.parent / "scratch"
         self._between = between
         self._rng = random.Random(20261121)
-        self._cut: set[str] = set()
+        self._cut = set()
         self._let(self._rng.choice(between))
 
     def _let(self, gradings):
@@ -184,7 +184,7 @@ def disturbed(run, out, kills, between):
     Args:
         between: how many gradings there may be between two deaths.
     """
-    reported: Counter[str] = Counter()
+    reported = Counter()
     waiting = rounds(kills)
     gate = Gate(out, between)
     for attempt in range(MOST_ATTEMPTS):

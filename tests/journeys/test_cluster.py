@@ -11,7 +11,6 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -63,8 +62,7 @@ def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path, cat
 
         if b"whoever grades this dies" in payload:
             os.kill(os.getpid(), signal.SIGKILL)
-        answer: bytes = grade_batch(payload)
-        return answer
+        return grade_batch(payload)
 
     make_class(tmp_path / "class", 12)
     with (tmp_path / "class" / "student-0004" / "doubling.py").open("ab") as file:
@@ -137,7 +135,7 @@ def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(tmp_path, cata
     make_class(tmp_path / "class", 60)
     version = grader_version(course.exercise("doubling"), course)
     checks = tmp_path / "content" / "graders" / "doubling" / "checks.py"
-    seen: list[str] = []
+    seen = []
 
     def report(item, *_):
         seen.append(item.student)
@@ -161,10 +159,7 @@ def scheduler_and_worker(environment):
     try:
         dask = [sys.executable, "-P", "-m", "distributed.cli.dask_scheduler"]
         plain = {"env": environment, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
-        scheduler = subprocess.Popen(
-            [*dask, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"],
-            **plain,
-        )
+        scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"], **plain)
         started.append(scheduler)
         line = next(line for line in scheduler.stderr if "Scheduler at:" in line)
         address = line.split()[-1]
@@ -257,10 +252,10 @@ def test_the_page_for_two_machines_works_as_written(tmp_path):
     beta.mkdir()
     for name in ("ca.pem", "machines.pem", "machines.key"):
         shutil.copy(alpha / name, beta)
-    started: list[subprocess.Popen[str]] = []
+    started = []
     try:
         for folder, block in zip((alpha, alpha, beta), daemons, strict=True):
-            how: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+            how = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
             words = shlex.split(block.replace("\\\n", " "))
             started.append(
                 subprocess.Popen(words, cwd=folder, env=environment, text=True, start_new_session=True, **how)

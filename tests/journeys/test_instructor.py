@@ -11,7 +11,6 @@ import sys
 import zipfile
 from importlib import metadata
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -65,7 +64,7 @@ def notebook(exercise):
 
 
 #: Each student: what becomes of each exercise, and the file that is handed in for it.
-KINDS: dict[str, tuple[str, Any]] = {
+KINDS = {
     "ada": (RIGHT, lambda one: (one.module, model(one))),
     "bea": (RIGHT, lambda one: (one.module.replace(".py", ".ipynb"), notebook(one))),
     "cyd": (LESS, lambda one: (one.module, wrong(one))),

@@ -9,7 +9,6 @@ import json
 import os
 import time
 from importlib.util import find_spec
-from typing import Any
 
 import pytest
 
@@ -109,7 +108,7 @@ class Kernel:
         }  # fmt: skip
         message = client.session.msg("execute_request", content, metadata={"cellId": cell} if cell else {})
         client.shell_channel.send(message)
-        said: list[str] = []
+        said = []
         while True:
             answer = client.get_iopub_msg(timeout=120)
             if answer["parent_header"].get("msg_id") != message["header"]["msg_id"]:
@@ -125,8 +124,7 @@ class Kernel:
                 return "\n".join(said)
 
     def cells(self):
-        found: list[dict[str, Any]] = json.loads(self.path.read_text("utf-8"))["cells"]
-        return found
+        return json.loads(self.path.read_text("utf-8"))["cells"]
 
     def run_all(self):
         """Run every code cell of the file; what the last one showed."""

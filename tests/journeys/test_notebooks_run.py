@@ -2,7 +2,6 @@
 
 import json
 from importlib.util import find_spec
-from typing import Any
 
 import pytest
 
@@ -36,8 +35,7 @@ def ran(kind, name, more=""):
     for place, text in ((0, OFFLINE), (len(notebook["cells"]) + 1, more)):
         extra = {"cell_type": "code", "id": f"extra-{place}", "metadata": {}, "source": text}
         notebook["cells"].insert(place, extra | {"outputs": [], "execution_count": None})
-    cells: list[dict[str, Any]] = json.loads(executed(json.dumps(notebook).encode(), str(one.path)))["cells"]
-    return cells
+    return json.loads(executed(json.dumps(notebook).encode(), str(one.path)))["cells"]
 
 
 def printed(cell):

@@ -44,7 +44,7 @@ class Student:
 
     def __init__(self, terminal, workspace):
         self.terminal, self.workspace = terminal, workspace
-        self.done: list[str] = []
+        self.done = []
         self.tasks = [one.id for one in CATALOG.tasks(LESSON)]
         self.left = list(self.tasks)
 

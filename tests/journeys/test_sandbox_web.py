@@ -68,16 +68,15 @@ class Sandbox:
             assert line, f"the server ended: {said}"
             said += line
         self.address = found[0]
-        self.complaints: list[str] = []
-        self.requests: list[str] = []
-        self.frame: np.ndarray | None = None
-        self.names: list[str] = []
-        self.status: dict = {}
+        self.complaints = []
+        self.requests = []
+        self.frame = None
+        self.names = []
+        self.status = {}
         self.page = context.new_page()
         self.page.set_viewport_size({"width": size[0], "height": size[1]})
         self.page.on(
-            "console",
-            lambda message: self.complaints.append(message.text) if complains(message) else None,
+            "console", lambda message: self.complaints.append(message.text) if complains(message) else None
         )
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("request", lambda request: self.requests.append(request.url))
@@ -178,7 +177,7 @@ class Sandbox:
 
 @pytest.fixture
 def sandbox(browser, tmp_path):
-    made: list[Sandbox] = []
+    made = []
 
     def make(scene, size=(1280, 800)):
         made.append(Sandbox(browser, scene, size, tmp_path))

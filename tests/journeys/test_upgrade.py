@@ -11,7 +11,6 @@ import shutil
 import sqlite3
 from contextlib import closing
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -23,7 +22,7 @@ MADE = Path(__file__).resolve().parents[1] / "fixtures" / "made_by_1_2_0"
 
 def _known(found):
     """What 1.2.0 said of the same record, in its words."""
-    told: dict[str, Any] = json.loads((MADE / "progress.json").read_text("utf-8"))
+    told = json.loads((MADE / "progress.json").read_text("utf-8"))
     same = {name: found[name] for name in ("quiz", "submissions")}
     for name in ("lessons", "exercises"):
         now = {one["id"]: one for one in found[name]}

@@ -12,7 +12,7 @@ class Stand:
 
     def __init__(self, basename):
         self.basename = basename
-        self.shown: list[str] = []
+        self.shown = []
 
     def open(self, address):
         self.shown.append(address)
@@ -78,7 +78,7 @@ def test_a_browser_that_does_not_start_is_no_error(stand, monkeypatch):
 def test_how_to_forward_a_port_is_said_where_nothing_is_opened(stand, monkeypatch, show, display):
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("DISPLAY", display)
-    said: list[str] = []
+    said = []
     browser.invite("http://127.0.0.1:4321/token/", said.append, show=show)
     assert "ssh -N -L 4321:127.0.0.1:4321" in said[-1]
     assert not stand.shown

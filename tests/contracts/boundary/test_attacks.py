@@ -191,7 +191,7 @@ def test_an_attack_gains_nothing_and_leaves_nothing(name, level, arenas):
     attack = ATTACKS[name]
     if attack.machine and attack.machine != platform.machine():
         pytest.skip(f"written for {attack.machine}")
-    arena: Arena = arenas(level, attack.exercise)
+    arena = arenas(level, attack.exercise)
     source = _source(name, attack, arena)
     before = marked(arena.marker)
     one = attack.slow or level == "L1"  # a new process for each check would take a third of a second
@@ -313,7 +313,7 @@ def test_every_attack_has_an_entry_and_says_what_it_tries():
 
 
 def test_the_model_earns_full_marks_and_the_wrong_code_almost_none(arenas):
-    arena: Arena = arenas("L1", "arena")
+    arena = arenas("L1", "arena")
     model = arena.grade(arena.model)
     assert model.all_pass
     assert model.score == model.max_score

@@ -20,7 +20,6 @@ from course.catalog.load import Catalog
 from course.scoring.judging.outcomes import NOT_JUDGED
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()
 #: What stands in the place of a function; ``own`` is the right one. Each check of its task waits for "slow",
@@ -98,7 +97,7 @@ def broken(source, names, way):
 
 @pytest.fixture(scope="module")
 def session_of():
-    opened: list[GradingSession] = []
+    opened = []
 
     @cache
     def session(exercise, timeout):
@@ -114,7 +113,7 @@ def graded(session, source):
     """The results, by task."""
     verdict = session.grade(Submission({session.exercise.module: source.encode()}))
     assert verdict.state == "graded", verdict.error
-    by_task: dict[str, list[CheckResult]] = {}
+    by_task = {}
     for check in verdict.checks:
         by_task.setdefault(check.task, []).append(check)
     return by_task

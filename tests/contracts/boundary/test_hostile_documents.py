@@ -13,7 +13,6 @@ import sys
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -131,7 +130,7 @@ def _sealed_again(change):
     return make
 
 
-_ROWS: dict[str, tuple[Any, ...]] = {
+_ROWS = {
     "students": ("ada", "{}"),
     "found": ("ada", "doubling", "{}"),
     "journal": (1, "2026-01-01T00:00:00Z", "me", "override", "ada", "doubling", "why", "1", "2"),
@@ -146,7 +145,7 @@ def _view(table):
     return as_view(table, ", ".join(f"i AS {name}" for name in (*TABLES[table], "row_sha256")))
 
 
-_BOOKS: tuple[tuple[str, Made], ...] = (
+_BOOKS = (
     *((f"view-{table}", _view(table)) for table in TABLES),
     ("triggers", sql(*(f"CREATE TRIGGER t_{of} BEFORE INSERT ON {of} BEGIN {_COUNT}; END" for of in TABLES))),
     *(
@@ -344,7 +343,7 @@ def measured(words, at, *, mini):
 @pytest.fixture(scope="module")
 def right(place, tmp_path_factory):
     """What a command takes with the right document, by door."""
-    known: dict[str, Ended] = {}
+    known = {}
 
     def ended(name):
         if name not in known:

@@ -12,7 +12,6 @@ import sys
 import textwrap
 import tomllib
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -89,12 +88,12 @@ class Fake:
     def __init__(self, name="one", seed=1):
         self.name = name
         self.seed = seed
-        self.log: list[Any] = []
+        self.log = []
 
 
 @pytest.fixture
 def collect(tmp_path):
-    opened: list[CollectedChecks] = []
+    opened = []
 
     def collect(*sources):
         files = []

@@ -67,7 +67,7 @@ def _notebook(cell):
 
 
 #: student -> file, content; all but the model's are hostile or broken
-CLASS: dict[str, tuple[str, bytes]] = {
+CLASS = {
     "a statement bomb": (
         "doubling.ipynb",
         _notebook(f"# get_ipython\n{_WRONG.format('pass', 'pass')}" + "x = 1\n" * 30_000),

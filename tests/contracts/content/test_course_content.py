@@ -81,7 +81,7 @@ def test_the_program_with_faults_says_what_its_report_remembers(catalog):
 
 
 def _summary(source):
-    module: dict[str, object] = {"__name__": "program"}
+    module = {"__name__": "program"}
     exec(compile(source, "program", "exec"), module)
     return module["summary"]()
 

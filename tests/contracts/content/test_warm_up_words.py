@@ -1,7 +1,6 @@
 """Every wrong program that a warm-up knows of fails a check and is told one of its own mistakes."""
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -44,7 +43,7 @@ def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog, warm
     assert table is not None
     assert questions is not None
     for task, codes, function in hypotheses_of(catalog, exercise):
-        submission: Any = LocalSubmission(model, replaced={task: function})
+        submission = LocalSubmission(model, replaced={task: function})
         outcomes = [checks.run(check, submission) for check in checks.in_order() if check.task == task]
         assert any(outcomes), f"no check fails for {codes}"
         numbers = sums_of(questions, task, function)

@@ -10,7 +10,6 @@ import ast
 import itertools
 import types
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -201,7 +200,7 @@ def scores(session, how):
     for path in shipped(exercise):
         if path.name == exercise.module:
             continue
-        namespace: dict[str, Any] = {"__name__": "handed_in"}
+        namespace = {"__name__": "handed_in"}
         exec(compile(submission(exercise, path.stem, how, 0), "handed_in", "exec"), namespace)
         new = dict[int, set[str]]()
         for task in exercise.task:
@@ -261,7 +260,7 @@ def test_no_shipped_file_of_a_warm_up_passes_one_of_its_checks(how):
 def test_the_shipped_answers_to_fixed_inputs_score_nothing_in_a_grading_run(exercise_id):
     exercise = CATALOG.exercise(exercise_id)
     questions = kit.companion(exercise_id, "questions")
-    known: dict[str, list[tuple[str, str]]] = {}
+    known = {}
     for check, task in questions.TASKS.items():
         if not task.startswith("simulate"):
             for args, answer in zip(

@@ -232,11 +232,7 @@ def test_a_variant_that_cannot_follow_the_solution_is_named(mini, run, text, lin
     assert says in problem.message
 
 
-def test_checks_without_markers_are_not_graded(
-    mini,
-    oracle,
-    run,
-):
+def test_checks_without_markers_are_not_graded(mini, oracle, run):
     edit(mini / CHECKS, "@pytest.mark.points(2)\n", "")
     assert not run().ok
     accepted = (path.name for path in (mini / "solutions" / "halving").glob("accepted/*.py"))
@@ -271,10 +267,7 @@ def test_what_belongs_to_no_objective_is_named_where_it_would_be_added(mini, run
         syllabus.read_text().replace('["doubling"]', '["doubling", "halving", "halving", "no"]')
     )
     found = [p.message for p in run().problems if p.code == "syllabus"]
-    assert found == [
-        "halving belongs to an objective above already.",
-        "there is no no among the exercises.",
-    ]
+    assert found == ["halving belongs to an objective above already.", "there is no no among the exercises."]
 
 
 def test_a_course_with_objectives_has_whole_lessons(mini, run):
@@ -301,7 +294,7 @@ def test_minutes_that_do_not_fit_the_text_of_a_lesson_are_named(mini, run):
 def test_a_command_of_a_lesson_that_fails_is_named(mini):
     lesson = mini / LESSON
     lesson.write_text(lesson.read_text() + "\n```console\n$ course lessons\n$ course lesson no\n```\n")
-    tried: list[list[str]] = []
+    tried = []
 
     def refused(commands):
         tried.append([*commands])

@@ -42,7 +42,7 @@ def test_the_words_of_a_hidden_check_are_read_as_a_student_gets_them(mini):
 
 def test_what_each_mutant_gets_to_read_can_be_listed(mini):
     catalog = Catalog()
-    steps: list[int] = []
+    steps = []
     outcomes = run_mutants(
         catalog, catalog.exercise("doubling"), on_progress=lambda done, *_: steps.append(done)
     )

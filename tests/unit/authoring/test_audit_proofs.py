@@ -105,8 +105,7 @@ def with_one_more(verdict):
         ),
         squares(with_check("double_of_three", points=2.0), "loses no points"),
         squares(
-            ending("ungradable", "Syntax."),
-            "mutant double.SQUARES_INSTEAD could not be graded: Syntax.",
+            ending("ungradable", "Syntax."), "mutant double.SQUARES_INSTEAD could not be graded: Syntax."
         ),
         (
             "double.SQUARES_INSTEAD",
@@ -211,7 +210,7 @@ def test_small_numbers_and_public_checks_may_be_said(oracle, run, check, fields)
 
 
 def test_progress_counts_up_to_the_end(mini, oracle):
-    steps: list[tuple[int, int, str]] = []
+    steps = []
     report = audit(Catalog(), on_progress=lambda *step: steps.append(step), grade=oracle.grade)
     assert [done for done, _, _ in steps] == [*range(22), 22]
     assert {total for _, total, _ in steps} == {report.graded}

@@ -53,7 +53,7 @@ def test_every_source_gets_the_verdict_of_all_checks(mini):
 @pytest.fixture
 def asked(monkeypatch):
     """The checks that each grading is to run; none stands for all."""
-    seen: list[tuple[str, ...]] = []
+    seen = []
     grade = Graders.grade
 
     def watched(self, entries):

@@ -156,11 +156,7 @@ def test_what_is_no_signature_is_refused(text):
 
 @pytest.mark.parametrize(
     "taken",
-    [
-        "exercises/tripling/questions.py",
-        "solutions/tripling/mistakes.py",
-        "graders/tripling/checks.py",
-    ],
+    ["exercises/tripling/questions.py", "solutions/tripling/mistakes.py", "graders/tripling/checks.py"],
 )
 def test_nothing_is_overwritten_and_nothing_half_written(mini, taken):
     (mini / taken).parent.mkdir(parents=True)

@@ -57,7 +57,7 @@ def test_exercises_come_in_their_order(mini):
 
 
 def test_listing_ids_opens_nothing_but_the_syllabus(mini, monkeypatch):
-    opened: list[str] = []
+    opened = []
     real = Path.read_bytes
     monkeypatch.setattr(Path, "read_bytes", lambda self: opened.append(self.name) or real(self))
     catalog = Catalog()

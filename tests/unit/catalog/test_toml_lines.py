@@ -137,7 +137,7 @@ def _leaves(value, path):
 @given(tables)
 def test_any_document_is_mapped_completely_and_in_order(document):
     """Every value has a line, at which the text holds it, and no line lies before the value's table."""
-    rows: list[str] = []
+    rows = []
     for spread, table in document:
         rows.append("[[item]]")
         rows += [f"{json.dumps(key)} = {_dump(value, spread)}" for key, value in table.items()]

@@ -20,12 +20,12 @@ class Page(HTMLParser):
     def __init__(self, source):
         super().__init__(convert_charrefs=True)
         self.source = source
-        self.elements: list[tuple[str, dict[str, str | None]]] = []
-        self.faults: list[str] = []
-        self.pieces: list[str] = []
-        self.tables: dict[str, list[list[str]]] = {}
-        self._open: list[str] = []
-        self._rows: list[list[str]] = []
+        self.elements = []
+        self.faults = []
+        self.pieces = []
+        self.tables = {}
+        self._open = []
+        self._rows = []
         self._caption = ""
         self.feed(source)
         self.close()

@@ -167,7 +167,7 @@ def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path):
 
 def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(tmp_path):
     path = tmp_path / "g.sqlite"
-    added: list[int] = []
+    added = []
 
     def fill():
         with Gradebook(path, create=True, writing=True) as book:

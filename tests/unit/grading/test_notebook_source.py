@@ -1,7 +1,6 @@
 """Notebooks as submissions: the module they stand for, whatever was done to their cells."""
 
 import json
-from typing import Any
 
 import pytest
 
@@ -38,7 +37,7 @@ def source_of(*cells):
 
 def run(source):
     """The names that the module defines."""
-    names: dict[str, Any] = {}
+    names = {}
     exec(compile(source.source, "springs.py", "exec", dont_inherit=True), names)
     return names
 

@@ -48,7 +48,7 @@ def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(session
 
 
 def test_a_search_for_the_cause_takes_no_time_from_later_checks_up_to_its_own(session, solution, monkeypatch):
-    allowed: list[float] = []
+    allowed = []
 
     class Noted(Deadline):
         def __init__(self, seconds, wall=None):
@@ -73,8 +73,8 @@ def test_a_search_for_the_cause_takes_no_time_from_later_checks_up_to_its_own(se
 
 
 def test_what_a_search_asks_of_a_function_is_measured(session, solution, monkeypatch):
-    given_back: list[float] = []
-    both: list[float] = []
+    given_back = []
+    both = []
     monkeypatch.setattr(RemoteSubmission, "not_charged", lambda _, seconds: given_back.append(seconds))
 
     def check(_, one, submission):
@@ -444,8 +444,7 @@ def test_a_search_for_the_mistake_that_breaks_leaves_the_checks_own_finding(sess
 
 
 @pytest.mark.parametrize(
-    "returned",
-    ["10**400", "2**63", "-2**64", "1e300", "np.uint64(2**64 - 1)", "{2: 10**5000}", "[2**70]"],
+    "returned", ["10**400", "2**63", "-2**64", "1e300", "np.uint64(2**64 - 1)", "{2: 10**5000}", "[2**70]"]
 )
 def test_no_number_is_too_large_for_a_verdict(session, solution, returned):
     verdict = grade(

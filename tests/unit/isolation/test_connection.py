@@ -8,7 +8,6 @@ import socket
 import struct
 import threading
 from time import monotonic
-from typing import Any
 
 import numpy as np
 import pytest
@@ -77,7 +76,7 @@ def _value(kind, value):
     return Codec().encode(kind, value)
 
 
-_opened: list[Connection] = []
+_opened = []
 
 
 @pytest.fixture(autouse=True)
@@ -252,14 +251,14 @@ def test_what_a_submission_says_cannot_steer_a_terminal():
 
 
 def test_functions_are_evaluated_here_and_counted_here():
-    seen: list[Any] = []
+    seen = []
     connection = _connect(_value(Kind.CALLBACK, [0, None, 2.0]), _value(Kind.RESULT, 1))
     assert connection.call("f", seen.append) == 1
     assert seen == [2.0]
 
 
 def test_more_data_than_any_solution_needs_ends_a_call():
-    kept: list[Any] = []
+    kept = []
     connection = _connect(*[_value(Kind.CALLBACK, [0, None, np.zeros(1 << 18)])] * 20, _value(Kind.RESULT, 1))
     assert _failure(connection, kept.append).kind == "protocol"
     assert sum(array.nbytes for array in kept) <= 18 << 20
@@ -344,7 +343,7 @@ def _slow_reader(theirs):
         threading.Event().wait(0.01)
 
 
-_HANGS: dict[str, Any] = {
+_HANGS = {
     "silence": lambda theirs: threading.Event().wait(1),
     "half a header": lambda theirs: theirs.sendall(b"\x05\0\0"),
     "half a frame": lambda theirs: theirs.sendall(struct.pack("<IB", 500, Kind.RESULT) + b"l"),

@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 from time import monotonic, sleep
-from typing import Any
 
 import pytest
 
@@ -137,7 +136,7 @@ def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level):
         stack.callback(os.sched_setaffinity, 0, before)
         # Whatever starts a worker hands its processor on, as in a session.
         os.sched_setaffinity(0, {processor})
-        found: Any = spawner(Level(level), ("numpy",))
+        found = spawner(Level(level), ("numpy",))
         stack.callback(found.close)
         stack.enter_context(_crowd(processor, 8))
 

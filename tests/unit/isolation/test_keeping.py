@@ -17,7 +17,7 @@ class Sandbox:
     level = Level.L2
 
     def __init__(self):
-        self.told: list[str] = []
+        self.told = []
         self.proves = True
 
     def spawn(self):
@@ -32,7 +32,7 @@ class Sandbox:
 
 @pytest.fixture
 def opened(monkeypatch):
-    made: list[Sandbox] = []
+    made = []
 
     def new(*_, **__):
         made.append(Sandbox())

@@ -41,7 +41,7 @@ class Names:
     """Stands for both sides: callables by number, anything else as it is."""
 
     def __init__(self):
-        self.held: list[Any] = []
+        self.held = []
 
     def lower(self, value):
         if isinstance(value, Rhs | Seed):
@@ -173,7 +173,7 @@ def test_what_cannot_cross_is_refused_by_the_sender(value: Any) -> None:
 
 
 def test_a_value_that_contains_itself_is_refused_by_the_sender():
-    value: list[Any] = []
+    value = []
     value.append(value)
     with pytest.raises(UnsupportedValueError, match="deep"):
         Codec().encode(Kind.RESULT, value)
@@ -333,7 +333,7 @@ def test_references_systems_and_seeds_pass_through_names():
 
 
 def test_a_system_at_the_greatest_depth_is_refused_by_both_sides_alike():
-    value: Any = Rhs("Oscillator", {"omega": 2.0})
+    value = Rhs("Oscillator", {"omega": 2.0})
     for depth in range(wire.MAX_DEPTH + 1):
         names = Names()
         try:

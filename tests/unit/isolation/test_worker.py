@@ -1,7 +1,6 @@
 """One submission in a worker, as a check meets it: at the strongest level that this machine has."""
 
 import contextlib
-from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +23,7 @@ def workers():
 
 @pytest.fixture
 def load(workers):
-    opened: list[Connection] = []
+    opened = []
 
     def load(source, **files):
         raw = source.encode() if isinstance(source, str) else source
@@ -54,7 +53,7 @@ def refuses(_):
 
 
 #: What works -> the source, arguments of its ``f``, and what that returns.
-_WORKS: dict[str, tuple[str | bytes, tuple[Any, ...], Any]] = {
+_WORKS = {
     "byte-order mark": (b"\xef\xbb\xbfdef f():\n    return '\xc3\xa9'\n", (), "é"),
     "latin-1": (b"# -*- coding: latin-1 -*-\ndef f():\n    return '\xe9'\n", (), "é"),
     "CRLF": (b"def f():\r\n    return '\xc3\xa9'\r\n", (), "é"),

@@ -8,7 +8,6 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import nbformat
@@ -38,7 +37,7 @@ def made(everything, kind, name):
 
 
 def cells(data, kind=""):
-    found: list[dict[str, Any]] = json.loads(data)["cells"]
+    found = json.loads(data)["cells"]
     return [cell for cell in found if kind in ("", cell["cell_type"])]
 
 
@@ -77,7 +76,7 @@ def test_notebooks_are_valid_and_have_no_output(everything):
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # nbformat only warns where it repairs ids
         for one in everything:
-            read: Any = nbformat.reads
+            read = nbformat.reads
             nbformat.validate(read(one.data.decode(), as_version=nbformat.NO_CONVERT))
     for one in everything:
         ids = [cell["id"] for cell in cells(one.data)]

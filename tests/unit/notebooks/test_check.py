@@ -2,10 +2,8 @@
 
 import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
@@ -26,7 +24,7 @@ class Shell:
     """What a check asks of IPython's shell: the cells that were run in it, oldest first."""
 
     def __init__(self, texts):
-        self.user_ns: dict[str, object] = {}
+        self.user_ns = {}
         self.history_manager = SimpleNamespace(input_hist_raw=["", *texts, "%course_check"])
 
 
@@ -170,7 +168,7 @@ def test_a_check_needs_no_ipython(here, form):
     made = json.loads(exercise_notebook(Catalog(), Catalog().exercise("doubling")))
     made["cells"] = [{**made["cells"][-1], "cell_type": "code", "source": text, "metadata": {}}]
     Path("mine.ipynb").write_text(json.dumps(made))
-    source: Any = {
+    source = {
         "text": text,
         "path": Path("mine.py"),
         "name": "mine.py",
@@ -251,7 +249,7 @@ def test_the_curve_of_a_failed_check_is_drawn_and_said(monkeypatch, tmp_path):
 
 
 def test_hints_progress_and_handing_in_need_no_terminal(here, capsys):
-    magics: dict[str, Callable[..., None]] = {}
+    magics = {}
 
     class Registered:
         events = SimpleNamespace(register=lambda *_: None)

@@ -7,7 +7,6 @@ import json
 import random
 import re
 import warnings
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -45,7 +44,7 @@ def edited(data, seed):
     """
     rng = random.Random(seed)
     notebook = json.loads(data)
-    cells: list[RawCell] = notebook["cells"]
+    cells = notebook["cells"]
     for cell in cells:
         cell["source"] = "".join(cell["source"])
     for edit in rng.choices(EDITS, k=rng.randint(1, 8)):
@@ -187,7 +186,7 @@ def draft(cells, rng):
     cells.insert(0, new_cell(f"def {name}(*anything):\n    raise NotImplementedError", copy.deepcopy(marks)))
 
 
-EDITS: tuple[Callable[[list[RawCell], random.Random], None], ...] = (
+EDITS = (
     split, merge, duplicate, shuffle, move, strip_one, strip_all, strip_ids, remove, run, add_magic, time_it,
     experiment, line_ends,
 )  # fmt: skip
@@ -203,7 +202,7 @@ def handed_in(module, exercise):
 
 def behaviour(source):
     """What the functions of a module give, to the last bit."""
-    names: dict[str, Any] = {}
+    names = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # about escapes and the like in strings
         exec(compile(source, "integrators.py", "exec", dont_inherit=True), names)

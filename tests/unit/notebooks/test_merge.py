@@ -7,7 +7,7 @@ import pytest
 
 from course.handed_in.notebook import notebook_source
 from course.notebooks.build import exercise_cells
-from course.notebooks.cells import Cell, code, document, markdown
+from course.notebooks.cells import code, document, markdown
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 
 STUB = "def force(k, x):\n    raise NotImplementedError"
@@ -15,7 +15,7 @@ MINE = "def force(k, x):\n    return -k * x"
 
 
 def generated(*, head="# Springs", stub=STUB, extra=False):
-    cells: list[Cell] = [
+    cells = [
         markdown(head),
         code("import math", role="setup", exercise="springs"),
         markdown("## Force"),

@@ -4,7 +4,6 @@ import asyncio
 import json
 from pathlib import Path
 from threading import Thread
-from typing import Any
 
 import pytest
 
@@ -26,7 +25,7 @@ PATIENCE = 60
 
 def said_by_a_page(widget, *messages):
     """Messages as a kernel hands them on from a subshell: on a thread without a loop."""
-    troubles: list[BaseException] = []
+    troubles = []
 
     def say():
         try:
@@ -45,7 +44,7 @@ def test_a_world_in_a_cell_moves_when_a_page_on_another_thread_says_so():
     async def cell():
         widget = play("head-on")
         assert isinstance(widget, Sandbox)
-        kinds: list[str] = []
+        kinds = []
 
         def send(message, buffers=None):
             kinds.append(message["kind"])
@@ -82,7 +81,7 @@ def workspace(tmp_path, monkeypatch):
 
 
 def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(workspace):
-    shown: list[tuple[str, bool]] = []
+    shown = []
 
     async def cell():
         widget = predict("accuracy", 1)
@@ -120,7 +119,7 @@ def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(worksp
 def test_a_prediction_is_compared_once_its_answer_is_open(workspace):
     async def cell():
         widget = predict("accuracy", 1)
-        told: list[Any] = []
+        told = []
         widget._open = lambda *, update=True: None
         widget.send = lambda message, buffers=None: told.append(message)
         said_by_a_page(widget, {"kind": "predict", "text": "it grows"}, {"kind": "judge", "word": "best"})
@@ -167,8 +166,8 @@ def test_outside_of_a_workspace_an_answer_opens_and_nothing_is_kept(tmp_path, mo
 
 
 def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(workspace, capsys):
-    sent: list[dict[str, Any]] = []
-    shown: list[bool] = []
+    sent = []
+    shown = []
 
     async def cell(letters):
         shown.clear()

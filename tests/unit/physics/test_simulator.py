@@ -326,7 +326,7 @@ def test_a_torque_turns_a_body_with_the_order_of_the_method(method, order, alike
 
 @pytest.mark.parametrize("method", sorted(STEPPERS))
 def test_the_time_of_a_law_is_a_number_also_after_an_impact(method):
-    asked: list[float] = []
+    asked = []
 
     def wind(t, bodies):
         asked.append(t)

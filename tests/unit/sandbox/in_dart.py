@@ -1,7 +1,6 @@
 """An SDF world run in DART, the engine of Gazebo Sim, built joint by joint; Gazebo itself is not here."""
 
 import math
-from collections.abc import Callable
 from xml.etree import ElementTree as ET
 
 import dartpy as dart
@@ -17,7 +16,7 @@ def ends(world_file, seconds):
     awake = world.getDeactivationOptions()
     awake.mEnabled = False
     world.setDeactivationOptions(awake)
-    links: dict[str, object] = {}
+    links = {}
     for model in described.iterfind("model"):
         world.addSkeleton(standing(model) if model.findtext("static") == "true" else jointed(model, links))
     for _ in range(round(seconds / world.getTimeStep())):
@@ -42,14 +41,14 @@ def jointed(model, links):
     moving = (
         {} if plugin is None else {n: float(plugin.findtext(n)) for n in plugin.findtext("joints").split()}
     )
-    made: dict[str, object] = {}
+    made = {}
     waiting = model.findall("joint")
     while waiting:
         joint = next(j for j in waiting if j.findtext("parent") in {"world", *made})
         waiting.remove(joint)
         parent, child = joint.findtext("parent"), described[joint.findtext("child")]
         kind = {"prismatic": "Prismatic", "revolute": "Revolute"}[joint.get("type")]
-        make: Callable = getattr(skeleton, f"create{kind}JointAndBodyNodePair")
+        make = getattr(skeleton, f"create{kind}JointAndBodyNodePair")
         held, body = make() if parent == "world" else make(made[parent])
         before = dart.math.Isometry3() if parent == "world" else placed(described[parent])
         at = placed(child).multiply(placed(joint))

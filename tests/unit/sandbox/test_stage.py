@@ -60,7 +60,7 @@ def meddle(stage, chance):
 @pytest.mark.parametrize("name", scene_ids())
 def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name):
     chance, stage = random.Random(name), make(name)
-    seen: dict[int, str] = {}
+    seen = {}
     stage.world.on_tick.append((1, lambda world=stage.world: seen.update({world.ticks: world.state_hash()})))
     watch(stage, 0.2)
     x, y = (float(c) for c in stage.world.state()[0, :2])

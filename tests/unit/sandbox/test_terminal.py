@@ -3,7 +3,6 @@
 import asyncio
 import inspect
 from threading import Event
-from typing import Any
 
 import pytest
 from textual.widgets import Input, OptionList, Static
@@ -22,8 +21,8 @@ class Played(SandboxApp):
 
     def __init__(self, scene):
         self.now = 0.0
-        self.kept: list[Any] = []
-        self.saved: dict[str, bytes] = {}
+        self.kept = []
+        self.saved = {}
 
         def clock():
             return self.now

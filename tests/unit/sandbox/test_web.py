@@ -292,7 +292,7 @@ def test_malformed_requests_are_answered_and_the_socket_stays_open():
         assert "1024 bytes" in errors[3]
         assert "gravity must be" in errors[2]
         open_socket.send_text('{"do": "pause", "on": false}')
-        message: dict | np.ndarray = {}
+        message = {}
         while not (isinstance(message, np.ndarray) and message[0] == 1 and message[2] > 0):
             message = receive(open_socket)
 

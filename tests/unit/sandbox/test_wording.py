@@ -8,15 +8,7 @@ import pytest
 from course.errors import ContentError, UsageError
 from course.sandbox.runs.running import run
 from course.sandbox.scene.expression import fill, used
-from course.sandbox.scene.loading import (
-    FOLDER,
-    choose,
-    compare,
-    guess_of,
-    read_scene,
-    unsaid,
-    values_of,
-)
+from course.sandbox.scene.loading import FOLDER, choose, compare, guess_of, read_scene, unsaid, values_of
 from course.sandbox.views.story import Experiment
 from course.sandbox.world.world import World
 

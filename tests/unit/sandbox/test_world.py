@@ -222,7 +222,7 @@ def test_a_thousand_sessions_on_every_scene_leave_nothing_unaccounted_for(name):
 
 def test_impulses_read_after_the_step_are_those_that_callbacks_see_inside_it():
     world = World(choose("billiards-break").scene)
-    seen: dict[tuple[int, str, str], float] = {}
+    seen = {}
 
     def post_solve(arbiter, space, data):
         if arbiter.is_first_contact:
@@ -333,7 +333,7 @@ def test_a_body_that_finds_no_room_stays_where_it_was():
     walls = [Body(name=f"w-{i}", position=(x, 0.0), **block) for i, x in enumerate((1.0, 2.05))]
     world = World(scene(*walls, puck("a", -1, 0)))
     before = world.state_hash()
-    inputs: list = []
+    inputs = []
     world.on_input.append(lambda *given: inputs.append(given))
     assert not world.place("a", 1.525, 0.0)
     assert (world.state_hash(), inputs) == (before, [])

@@ -279,10 +279,7 @@ def impulse(x):
         ("LIMIT, WAYS = -1e-8, (1, 'up')", False),
         ("import numpy as np\nfar = np.inf", False),
         ("known = {}", True),
-        (
-            "table = {1: 2}\ndef known(x):\n    return table[x], len(table), np.sum(table)",
-            False,
-        ),
+        ("table = {1: 2}\ndef known(x):\n    return table[x], len(table), np.sum(table)", False),
         ("table = [1]\ndef known(x):\n    return [2 * y for y in table if y > x]", False),
         ("table = {}\ndef known(x):\n    table[x] = 1", True),
         ("table = []\ndef known(x):\n    table.append(x)", True),

@@ -47,7 +47,7 @@ def home():
 @pytest.fixture
 def deadlines(monkeypatch):
     """How long each load and each check may take, in s of CPU time."""
-    made: list[float] = []
+    made = []
 
     class Noted(Deadline):
         def __init__(self, seconds, wall=None):

@@ -6,7 +6,6 @@ from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()
 EXERCISE = CATALOG.exercise("collisions")
@@ -23,7 +22,7 @@ def failed(session, more):
     """The failed checks of the solution with something put after it, by task."""
     verdict = session.grade(Submission({EXERCISE.module: (SOLUTION + more).encode()}))
     assert verdict.state == "graded", verdict.error
-    found: dict[str, list[CheckResult]] = {}
+    found = {}
     for check in verdict.checks:
         if check.status != "pass":
             found.setdefault(check.task, []).append(check)

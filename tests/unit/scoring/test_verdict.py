@@ -1,7 +1,6 @@
 """What is kept of a verdict, what of it a student may read, and its values as a person reads them."""
 
 import math
-from typing import Any
 
 import msgspec
 import pytest
@@ -28,7 +27,7 @@ from course.scoring.verdict import (
 
 
 def _check(**fields):
-    given: dict[str, Any] = {
+    given = {
         "id": "a", "title": "It is so", "task": "integrate", "status": Status.FAIL, "points": 0.0,
         "max_points": 1.0, "visibility": Visibility.HIDDEN, "message": "It is not.", "help": "Do.",
         "diagnosis": "NOT_SO", "duration_ms": 123.4, "actual": 5.0, "quantity": "slip", "stdout": "printed",

@@ -16,8 +16,7 @@ from course.figures.plots import draw, render
 from course.figures.terminal import in_cells
 
 PLOT = Plot(
-    title="A line",
-    panels=(Panel("time / s", "height / m", (Series("", [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]),)),),
+    title="A line", panels=(Panel("time / s", "height / m", (Series("", [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]),)),)
 )
 
 

@@ -22,7 +22,7 @@ WAYS = {
 @pytest.fixture
 def ran(course, tmp_path, monkeypatch):
     """A gradebook from elsewhere: its graders were others, and nothing here knows them. What they grade."""
-    graded: list[str] = []
+    graded = []
 
     def noting(entries, terms, graders):
         for done in right(entries, terms):
@@ -64,7 +64,7 @@ def test_somebody_elses_graders_run_where_nobody_can_be_asked_only_with_yes(cour
 
 @pytest.mark.parametrize("words", WAYS.values(), ids=WAYS)
 def test_a_person_at_a_terminal_is_asked(course, ran, words, monkeypatch):
-    asked: list[str] = []
+    asked = []
     monkeypatch.setattr(Console, "interactive", property(lambda self: True))
     monkeypatch.setattr(Console, "confirm", lambda _, question: asked.append(question) or len(asked) > 1)
     for times, agreed in ((1, False), (2, True)):

@@ -260,7 +260,7 @@ def test_likeness_is_shown_and_written_as_a_page(course, out):
 
 
 def test_a_share_is_a_part_of_one_or_a_percentage_and_else_refused_with_both_forms(course, out, monkeypatch):
-    asked: list[float] = []
+    asked = []
 
     def compare(*_, at_least):
         asked.append(at_least)

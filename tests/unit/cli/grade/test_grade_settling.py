@@ -372,7 +372,7 @@ def test_the_summary_says_what_passes_and_whose_files_there_are(course, here):
 def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name_and_named_and_proposed(
     course, here, monkeypatch, encoding, named
 ):
-    graded: list[bytes] = []
+    graded = []
 
     def kept(entries, terms, graders):
         given = list(entries)

@@ -3,7 +3,6 @@
 import io
 import re
 from collections import Counter
-from collections.abc import Iterator
 
 import pytest
 
@@ -60,7 +59,7 @@ class Typed:
 
 def lines(*typed):
     """These lines, one after the other; at their end the input ends."""
-    left: Iterator[str] = iter(typed)
+    left = iter(typed)
     return lambda _: next(left, None)
 
 
@@ -185,7 +184,7 @@ def integrate(*_):
 
 def repeated(text):
     """Sentences that are there more than once."""
-    said: Counter[str] = Counter()
+    said = Counter()
     verbatim = False
     for line in text.splitlines():
         verbatim = verbatim or bool(_VERBATIM.match(line))
@@ -216,7 +215,7 @@ def test_the_way_through_an_exercise(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path / "mine")
     path = tmp_path / "mine" / EXERCISE / f"{EXERCISE}.py"
     right = solution_path(CATALOG, CATALOG.exercise(EXERCISE)).read_text("utf-8")
-    steps: list[tuple[str, ...]] = [("start", EXERCISE), ("check", EXERCISE), ("hint", EXERCISE)]
+    steps = [("start", EXERCISE), ("check", EXERCISE), ("hint", EXERCISE)]
     steps += [("exercises",), ("lessons",), ("warmup",), ("next",), (), ("progress",)]
     found = {words: repeated(heard(capsys, *words)) for words in steps}
     for wrong in (WRONG, ""):

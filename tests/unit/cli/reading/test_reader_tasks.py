@@ -174,7 +174,7 @@ def test_outside_of_a_workspace_it_says_what_is_needed():
 def test_its_editor_opens_at_the_function_that_the_finding_is_about(mine):
     from textual.widgets import TextArea
 
-    at: list[str] = []
+    at = []
 
     async def journey(app, pilot):
         await pilot.press("enter")

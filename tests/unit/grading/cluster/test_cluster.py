@@ -220,7 +220,7 @@ def test_messages_of_another_format_are_refused_and_not_half_understood():
 
 
 def test_nothing_is_pickled_but_the_name_of_a_function_and_bytes():
-    sent: list[tuple[Any, ...]] = []
+    sent = []
 
     class Future:
         def add_done_callback(self, _):
@@ -254,7 +254,7 @@ def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands():
         def result(self):
             return self._value
 
-    seen: list[Any] = []
+    seen = []
 
     class Client:
         status = "running"

@@ -108,7 +108,7 @@ def said(address, settings):
     known = {f"distributed.comm.tls.{name}": value for name, value in (none | settings).items()}
     known["distributed.comm.require-encryption"] = settings.get("require-encryption")
     known.pop("distributed.comm.tls.require-encryption", None)
-    found: CourseError | None = None
+    found = None
     used = time.process_time()
     with dask.config.set(known):
         try:
@@ -131,7 +131,7 @@ def mine(pems):
 
 
 #: Settings -> what is said; ``{}`` stands for the folder of the certificates.
-WRONG: dict[str, tuple[dict[str, str], str]] = {
+WRONG = {
     "none": ({}, "needs the authority's certificate and a certificate of yours and the key"),
     "no authority": ({"ca-file": ""}, "needs the authority's certificate, and"),
     "no key": ({"client.key": ""}, "needs the key of that certificate, and"),
@@ -150,7 +150,7 @@ def test_each_wrong_setting_is_one_sentence_and_the_right_ones_are_none(pems):
     with scheduler(pems) as port:
         address = f"tls://127.0.0.1:{port}"
         for name, (change, words) in WRONG.items():
-            settings: dict[str, str] = {}
+            settings = {}
             if name != "none":
                 settings = mine(pems) | {key: value.format(pems) for key, value in change.items()}
             error = said(address, settings)

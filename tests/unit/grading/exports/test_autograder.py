@@ -6,7 +6,6 @@ import stat
 import subprocess
 import tomllib
 import zipfile
-from typing import Any
 
 import pytest
 from packaging.requirements import Requirement
@@ -74,7 +73,7 @@ def test_its_scripts_are_shell(unpacked, script):
 def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(tmp_path, solution, monkeypatch):
     """The total is shown at once; a comparison with a drawn number would tell one bit of it each time."""
     (tmp_path / "submission").mkdir()
-    seeds: list[int] = []
+    seeds = []
 
     def noted(entries, terms):
         seeds.append(terms.seed)
@@ -96,8 +95,7 @@ def graded(tmp_path, **changes):
     path, results = tmp_path / "config.json", tmp_path / "results.json"
     path.write_text(json.dumps(facts | {"graders": snapshot.sha256} | changes), "utf-8")
     assert main([str(tmp_path / "submission"), str(results), str(path)]) == 0
-    found: dict[str, Any] = json.loads(results.read_bytes())
-    return found
+    return json.loads(results.read_bytes())
 
 
 def test_what_cannot_be_graded_is_explained_to_the_student(tmp_path):

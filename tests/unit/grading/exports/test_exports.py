@@ -6,7 +6,6 @@ import io
 import json
 import re
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as ET
 
 import msgspec
@@ -161,7 +160,7 @@ def violations():
     schema = xmlschema.XMLSchema(JUNIT)
 
     def found(content):
-        errors: Any = schema.iter_errors(io.BytesIO(content))
+        errors = schema.iter_errors(io.BytesIO(content))
         return [f"{error.path}: {error.reason}" for error in errors]
 
     return found

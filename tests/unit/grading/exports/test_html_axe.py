@@ -102,8 +102,8 @@ def test_a_page_asks_for_nothing_and_fits_a_phone(browser, folder, name):
     """As it is, its policy in force: no message, no request beside the file, no sideways scrolling."""
     context = browser.new_context(viewport={"width": 390, "height": 844})
     page = context.new_page()
-    said: list[str] = []
-    asked: list[str] = []
+    said = []
+    asked = []
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
     page.on("request", lambda request: asked.append(request.url))

@@ -52,7 +52,7 @@ def taken_by_moodle(path, most):
     head, *rows = read_by_php(path.read_bytes().decode("utf-8"))
     assert {"Identifier", "Grade", "Last modified (grade)"} <= set(head)
     assert {len(row) for row in rows} == {len(head)}
-    found: dict[str, tuple[float | None, str]] = {}
+    found = {}
     for row in (dict(zip(head, cells, strict=True)) for cells in rows):
         assert row["Identifier"].startswith("Participant ")
         number = row["Identifier"][len("Participant ") :]

@@ -22,7 +22,7 @@ def lay(folder, *names):
 
 def graded(found, exercise):
     """Student -> what would be graded, or the code of why not."""
-    answers: dict[str, bytes | str] = {}
+    answers = {}
     for student in found.students:
         (entry,) = read_student(student, [exercise], required=True)
         if entry.submission is not None:

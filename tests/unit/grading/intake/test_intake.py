@@ -8,9 +8,6 @@ import stat
 import subprocess
 import sys
 import zipfile
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import msgspec
 import pytest
@@ -61,7 +58,7 @@ def archive(path, members, *, manifest=(), mode=0o100644):
 
 
 FOUND = "doubling/doubling.py"
-LAID: dict[str, Callable[[Path], object]] = {
+LAID = {
     "a module": lambda folder: (folder / "doubling.py").write_bytes(SOURCE),
     "a module in its folder": lambda folder: put(folder / FOUND, SOURCE),
     "a zip made by submit": lambda folder: archive(folder / "mine.zip", {FOUND: SOURCE}),
@@ -267,7 +264,7 @@ _DOUBLE = "def double(x):\n    return 2 * x\n"
 
 
 #: What once took minutes or hours, by size.
-_LARGE: dict[str, Any] = {
+_LARGE = {
     "statements beside a magic word": lambda n: notebook(f"{_DOUBLE}# get_ipython\n" + "x\n" * (10 * n)),
     "escaped quotes": lambda n: notebook(f"%magic\n{_DOUBLE}'" + "\\'" * (20 * n)),
     "magics": lambda n: notebook(_DOUBLE, "%x\n" * (10 * n)),
@@ -354,7 +351,7 @@ def test_an_archive_is_read_once_for_all_questions_about_a_student(tmp_path, dou
 def test_what_ends_the_reader_is_not_read_again_and_all_of_a_student_has_one_time(
     tmp_path, strict, monkeypatch
 ):
-    asked: list[object] = []
+    asked = []
     files = [tmp_path / f"{n}.zip" for n in range(3)]
     for path in files:
         path.write_bytes(zipped({"hw.py": _DOUBLE}))

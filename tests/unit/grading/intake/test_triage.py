@@ -46,7 +46,7 @@ def read(folder, doubling, *, required=True):
 
 
 #: What is taken without a question -> what the result says of it.
-TAKEN: dict[str, tuple[dict[str, bytes], str]] = {
+TAKEN = {
     "its very name": ({"doubling.py": SOURCE}, ""),
     "letter case": ({"Doubling.PY": SOURCE}, "'Doubling.PY' was taken for doubling.py."),
     "a browser's number": ({"doubling (2).py": SOURCE}, "'doubling (2).py' was taken for doubling.py."),
@@ -109,7 +109,7 @@ def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(tmp_path, do
 
 
 #: What is asked about -> the code, and the one match there is.
-ASKED: dict[str, tuple[dict[str, bytes], str, str | None]] = {
+ASKED = {
     "another name": ({"homework.py": SOURCE}, "no_file", "homework.py"),
     "another folder": ({"week 3/doubling.py": SOURCE, "a.txt": b"x"}, "no_file", "week 3/doubling.py"),
     "in a zip, another name": (
@@ -157,7 +157,7 @@ def in_tar(mode, **members):
 
 
 #: What lies there -> the name that is proposed and can be assigned, and what is said of it.
-ODDLY: dict[str, tuple[dict[str, bytes], str, str]] = {
+ODDLY = {
     "hidden suffix": ({"doubling.py.txt": SOURCE}, "doubling.py.txt", "a text"),
     "text": ({"doubling.txt": SOURCE}, "doubling.txt", "a text"),
     "no suffix": ({"doubling": SOURCE}, "doubling", "a text"),
@@ -228,7 +228,7 @@ FORGED = "work. The grader failed here; by hand it is 100 of 100"
 _LANGUAGE = f'"metadata": {{"language_info": {{"name": "{FORGED}"}}}}'.encode()
 _CHANGED = {"doubling.py": SOURCE, "submission.json": '{"format_version": 1, "files": {"x.py": "0"}}'}
 _NEWER = {"submission.json": '{"format_version": 9}'}
-NAMED: dict[str, dict[str, bytes]] = {
+NAMED = {
     "a file": {f"{FORGED}.py": SOURCE},
     "a folder": {f"{FORGED}/doubling.py": SOURCE},
     "a zip": {f"{FORGED}.zip": zipped({"doubling.py": SOURCE, "doubling/doubling.py": OTHER})},
@@ -361,7 +361,7 @@ def counts(out):
 
 
 #: What a student hands in -> what it is for each of two exercises that are asked for, one after the other.
-APART: dict[str, tuple[dict[str, bytes], str, str]] = {
+APART = {
     "one's own file": ({"doubling.py": SOURCE}, "graded", "missing"),
     "in a zip": ({"all.zip": zipped({"doubling/doubling.py": SOURCE})}, "graded", "missing"),
     "beside what is no code": ({"doubling.py": SOURCE, "notes.pdf": b"%PDF"}, "graded", "missing"),
@@ -451,7 +451,7 @@ def test_what_nobody_thought_of_costs_its_own_submission_only(tmp_path, catalog,
     for student in ("ada", "bob", "cy"):
         lay(tmp_path / "class", student, **{"doubling.py": SOURCE})
     original = getattr(students, where)
-    calls: list[None] = []
+    calls = []
 
     def second_fails(*given, **more):
         calls.append(None)

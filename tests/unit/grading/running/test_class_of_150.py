@@ -35,7 +35,7 @@ NAMES = ("Ada Lovelace", "Bob O'Neil", "Zoë Müller", "Grace Hopper", "李 明"
 
 
 #: Student -> what is handed in instead of ``doubling.py``; the last five are taken without a question.
-ODD: dict[int, tuple[str, bytes]] = {
+ODD = {
     40: ("homework3.py", SOURCE),
     41: ("my solution.py", SOURCE),
     42: ("dubling.py", SOURCE),

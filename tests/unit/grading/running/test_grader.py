@@ -21,7 +21,7 @@ ORDER = ("doubling", "halving", "doubling", "doubling", "halving")
 def test_a_grader_closes_its_oldest_session_for_another(catalog, monkeypatch, most, opened):
     monkeypatch.setenv("COURSE_CONTENT", str(catalog.content.root))
     monkeypatch.setattr(grader, "_MOST_OPEN", most)
-    collected: list[object] = []
+    collected = []
     real = session.CollectedChecks
     monkeypatch.setattr(session, "CollectedChecks", lambda *a, **k: collected.append(a) or real(*a, **k))
     one = grader._Grader(Config(Terms(), 0))
@@ -41,7 +41,7 @@ def test_a_grader_closes_its_oldest_session_for_another(catalog, monkeypatch, mo
 
 _NOT = ":1: it cannot be imported ("
 #: What stands above an exercise's hidden checks, if there are any, and what is said of that file.
-FAULTS: list[tuple[str | None, str]] = [
+FAULTS = [
     ("import no_such_module", f"{_NOT}ModuleNotFoundError: No module named 'no_such_"),
     ("1 / 0", f"{_NOT}ZeroDivisionError: division by zero)."),
     ("def (:", f"{_NOT}SyntaxError: "),

@@ -17,7 +17,6 @@ from course.grading.running.batch import Graded
 from course.grading.running.rerun import RerunOptions, rerun
 from course.grading.running.run import edited_since
 from course.scoring.graders import grader_version
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -29,8 +28,8 @@ class Graders:
     """Stand-ins for grader processes: the verdicts of ``NOW``."""
 
     def __init__(self):
-        self.asked: list[str] = []
-        self.options: Terms | None = None
+        self.asked = []
+        self.options = None
 
     def __call__(self, entries, options):
         self.options = options

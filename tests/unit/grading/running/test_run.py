@@ -5,7 +5,6 @@ import json
 import os
 import shutil
 from dataclasses import replace
-from typing import Any
 
 import msgspec
 import pytest
@@ -90,7 +89,7 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(tmp_path, catalog
     before = file.read_bytes()
     file.write_bytes(solution + WRONG)
     again = RunOptions(exercises=("doubling",), terms=Terms(), resume=True)
-    graded: list[str] = []
+    graded = []
 
     def report(result, *_):
         graded.append(result.student)
@@ -241,7 +240,7 @@ def test_the_command_reports_json_lines_and_exit_codes(tmp_path, solution, monke
     assert done.returncode == 6, done.stderr
     lines = [json.loads(line) for line in done.stdout.splitlines()]
     assert [line["schema"] for line in lines] == ["course.grade/1"] * 3 + ["course.grade-summary/1"]
-    summary: dict[str, Any] = lines[-1]
+    summary = lines[-1]
     assert (summary["graded"], summary["ungradable"], summary["exit_code"]) == (2, 1, 6)
     assert summary["troubled"][0]["code"] == "no_file"
     assert summary["isolation"] == {"L1": 2}
@@ -272,7 +271,7 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by
 
 
 #: What a student hands in who took the quiz -> what becomes of the quiz, and of two exercises.
-QUIZZED: dict[str, tuple[dict[str, Any], str, str]] = {
+QUIZZED = {
     "the record in a zip": ({"a.zip": {"submission.json": "{quiz}"}}, "graded", "missing"),
     "the zip": ({"a.zip": {"submission.json": "{both}", "halving.py": "x"}}, "graded", "graded"),
     "the zip, unpacked": ({"submission.json": "{both}", "halving.py": "x"}, "graded", "graded"),
@@ -353,7 +352,7 @@ def test_what_is_not_finished_is_refused_before_anything_is_graded(
 def test_a_student_counts_as_done_when_graded_and_not_when_read(tmp_path, catalog, solution):
     make_class(tmp_path / "class", solution, 4)
     options = RunOptions(exercises=("doubling",), terms=Terms())
-    seen: list[int] = []
+    seen = []
 
     def all_at_once(entries, more):
         yield from right(list(entries), more)

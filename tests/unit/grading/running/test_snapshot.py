@@ -47,7 +47,7 @@ def edit(course):
 
 
 def graders():
-    found: list[str] = []
+    found = []
     for task in Path(f"/proc/{os.getpid()}/task").iterdir():
         with suppress(FileNotFoundError, ProcessLookupError):  # threads and processes end while we look
             children = (task / "children").read_text().split()
@@ -110,7 +110,7 @@ def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(tmp_path, course, s
     students = 40 if level else 6
     make_class(tmp_path / "class", solution, students)
     version = grader_version(course.exercise("doubling"), course)
-    killed: list[int] = []
+    killed = []
 
     def report(*_):
         if not killed:
@@ -136,7 +136,7 @@ def test_resuming_after_an_edit_grades_the_rest_as_the_run_began_and_says_what_w
     before = outcomes(out)
     edit(course)
     make_class(tmp_path / "more", solution, 5)
-    reported: list[str] = []
+    reported = []
     again = grade_class(
         tmp_path / "more", out, course, options(resume=True),
         lambda item, *_: reported.append(item.student), grade=right,

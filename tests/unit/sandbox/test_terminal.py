@@ -1,7 +1,6 @@
 """The view in a terminal, played with textual's pilot: keys, mouse, questions, sizes, ends."""
 
 import asyncio
-import inspect
 from threading import Event
 
 import pytest
@@ -14,6 +13,7 @@ from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.terminal import view as terminal
 from course.sandbox.views.terminal.app import SandboxApp
 from course.sandbox.views.terminal.asking import Gallery, LineOverlay, PageOverlay
+from tests.piloted import as_test
 
 
 class Played(SandboxApp):
@@ -60,25 +60,16 @@ class Played(SandboxApp):
 
 
 def on(scene, size=(80, 24)):
-    """Make a script a test that plays this scene; what it takes beyond view and pilot, pytest gives."""
+    """Make a script a test that plays this scene."""
 
-    def made(script):
-        async def run(given):
-            app = Played(scene)
-            async with app.run_test(size=size) as pilot:
-                await pilot.pause()
-                app.frames(1)
-                await script(app, pilot, **given)
+    async def played(script):
+        app = Played(scene)
+        async with app.run_test(size=size) as pilot:
+            await pilot.pause()
+            app.frames(1)
+            await script(app, pilot)
 
-        def test(**given):
-            asyncio.run(run(given))
-
-        test.__name__, test.__module__ = script.__name__, script.__module__
-        _, _, *rest = inspect.signature(script).parameters.values()
-        test.__signature__ = inspect.Signature(rest)
-        return test
-
-    return made
+    return lambda script: as_test(script, lambda given, **_: asyncio.run(played(given)))
 
 
 @on("newtons-cradle")

@@ -17,9 +17,9 @@ PATHS = sorted(path for path in (ROOT / "course").rglob("*.py") if LESSONS not i
 PAGES = sorted([*(ROOT / "docs").rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
 #: The names of files look like dotted names.
 FILES = ("py", "js", "md", "toml", "json", "jsonl", "csv", "sqlite", "coursepack")
-#: ``a.b``, with or without brackets after it, and ``LikeThis``.
 #: What a scene's file calls a body of its own.
 OF_SCENES = "body"
+#: ``a.b``, with or without brackets after it, and ``LikeThis``.
 NAME = re.compile(rf"``(?!\S+\.(?:{'|'.join(FILES)})``)(_?[A-Z][a-z]\w*|\w+(?:\.\w+)+)(?:\(\))?``")
 
 

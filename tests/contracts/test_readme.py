@@ -1,4 +1,4 @@
-"""What the README promises at first sight: its pictures, its four lines, its length."""
+"""What the README shows and counts at first sight, and where its links lead."""
 
 import re
 import tomllib

@@ -51,17 +51,8 @@ _ODD: tuple[Any, ...] = (
     "x" * 5000, ["def double(x):\n", "    return x"], [1], [None], {"a": {}},
 )  # fmt: skip
 _KEYS = (
-    "cell_type",
-    "source",
-    "input",
-    "metadata",
-    "outputs",
-    "execution_count",
-    "id",
-    "course",
-    "role",
-    "name",
-)
+    "cell_type", "source", "input", "metadata", "outputs", "execution_count", "id", "course", "role", "name",
+)  # fmt: skip
 
 
 def notebook(chance: Chance) -> bytes:

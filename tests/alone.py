@@ -3,8 +3,6 @@
 A test that is green only beside its neighbours, or red without them, shows itself.
 """
 
-from __future__ import annotations
-
 import os
 import pickle
 

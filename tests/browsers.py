@@ -1,7 +1,5 @@
 """The system's own Chromium, for tests of pages, and axe-core, which npm fetches."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

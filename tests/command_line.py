@@ -5,8 +5,6 @@ takes a third of a second longer. Signals, terminals, the encoding of a console,
 program's own entry point need one.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import subprocess

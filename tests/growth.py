@@ -4,8 +4,6 @@ For tests under ``soak``: a ratio of times measured in one process, not a time, 
 does not belong into a run that decides.
 """
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Callable
 from time import process_time

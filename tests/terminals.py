@@ -1,7 +1,5 @@
 """A terminal of its own, in tmux: keys and a mouse as a terminal sends them, and what is on the screen."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -8,8 +8,6 @@ cases. Nobody writes it by hand:
 Several files are taken together, where the tests ran in parts.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 import sys

@@ -7,8 +7,6 @@ Nothing is graded here: each part is done as a run over so many students does it
 takes is measured by ``class_run.py`` and ``protection.py``.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys

@@ -11,8 +11,6 @@ Every figure is a ratio within one run of this script. ``jobs`` and ``cluster`` 
 else uses: two, and as many as there are workers.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.util
 import os

@@ -5,8 +5,6 @@
 Run it with the Python of an environment the course is installed in. The two sides of each figure alternate.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import statistics
@@ -93,13 +91,8 @@ def _until(process: subprocess.Popen[str], word: str) -> None:
 
 def _checks_s(inside: list[str]) -> float:
     """What the checks take, as the checks report it."""
-    done = subprocess.run(
-        [*inside, "check", "integrators", "--json"],
-        env=ENVIRONMENT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    command = [*inside, "check", "integrators", "--json"]
+    done = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, check=False)
     return sum(check["duration_ms"] for check in json.loads(done.stdout)["checks"]) / 1e3
 
 

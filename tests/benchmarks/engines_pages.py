@@ -8,8 +8,6 @@ engine, a scenario or an option: engines_settings.py, engines_reference.py, engi
 this one, and ``course.authoring.lessons.cells.update_outputs`` for the lesson.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import math

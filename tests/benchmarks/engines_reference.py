@@ -7,8 +7,6 @@ Needs all extras (engines, physx, bullet, dart). Rates are those of the machine;
 is meant to come out the same wherever the same wheels are installed.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime
 import math

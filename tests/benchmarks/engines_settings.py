@@ -9,8 +9,6 @@ extras. It takes about ten minutes of one processor. After it, tests/benchmarks/
 measure again.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

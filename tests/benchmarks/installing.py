@@ -6,8 +6,6 @@ Packages leave out what the environment itself brings (pip, setuptools). Sizes a
 the bytecode that pip writes and uv does not. Seconds depend on the network and on what is cached.
 """
 
-from __future__ import annotations
-
 import argparse
 import shutil
 import subprocess

@@ -3,8 +3,6 @@
 What ``protection.py`` runs as "a pytest process per submission"; COURSE_BENCH_SOURCE names the file.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import zlib

@@ -4,8 +4,6 @@ Every case is timed in the same run, the single and the thousandfold one in turn
 The promise is a ratio of at most 20.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

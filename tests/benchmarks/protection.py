@@ -10,8 +10,6 @@ With --diagnosis the two sides are a protected grading with diagnoses and one wi
 mutants of an exercise, each handed in again and again as one common mistake would be.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import statistics
@@ -224,18 +222,8 @@ def per_pytest(session: GradingSession, module: str, source: bytes) -> None:
         path.write_bytes(source)
         for _ in range(5):
             before = os.times()
-            command = [
-                sys.executable,
-                "-m",
-                "pytest",
-                "-q",
-                "-c",
-                os.devnull,
-                "-p",
-                "no:cacheprovider",
-                "--noconftest",
-                str(driver),
-            ]
+            plain = ["-q", "-c", os.devnull, "-p", "no:cacheprovider", "--noconftest"]
+            command = [sys.executable, "-m", "pytest", *plain, str(driver)]
             # Without the plugins that happen to be installed here: they are no part of grading.
             environment = {**bare, "COURSE_BENCH_SOURCE": str(path), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
             done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)

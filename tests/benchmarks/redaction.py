@@ -8,8 +8,6 @@ grading is put down as text; so many different texts are so many bits. What the 
 beside it: a channel that is closed there too was never tried.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

@@ -9,8 +9,6 @@ nor those of Windows, which need a Windows, are taken. What the standard library
 means (a socket pair over TCP, ending a process) is put back by those means.
 """
 
-from __future__ import annotations
-
 import asyncio  # noqa: F401 - looks at the platform when it is imported, as a part of Windows would
 import os
 import runpy

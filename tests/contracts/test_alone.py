@@ -3,8 +3,6 @@
 "Every exercise" was once the two of a miniature course, because a neighbour had left its setting behind.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -24,7 +22,7 @@ FILES = [
 @pytest.mark.soak
 @pytest.mark.skipif(os.name == "nt", reason="needs fork")
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem.removeprefix("test_"))
-def test_each_test_passes_alone(path: Path) -> None:
+def test_each_test_passes_alone(path):
     """What is under soak has its own turn; 5 is a file in which everything is."""
     command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "-p", "tests.alone", "-p", "no:cacheprovider"]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}

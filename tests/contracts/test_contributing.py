@@ -1,13 +1,9 @@
 """What CONTRIBUTING.md shows an author works: every example is run, and every name of the kit has one."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import textwrap
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -19,7 +15,7 @@ from course.scoring import kit
 from course.scoring.checks.collected import words as known_words
 from course.scoring.judging.session import GradingSession, report_of
 from course.scoring.judging.submission import Submission
-from course.scoring.verdict import CheckResult, Status
+from course.scoring.verdict import Status
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -31,12 +27,12 @@ WRONG = "\n".join(
 )
 
 
-def blocks(kind: str, language: str = "python") -> list[str]:
+def blocks(kind, language="python"):
     """The blocks of one kind, in order."""
     return re.findall(rf"^```{language} {kind}\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 
 
-def checks() -> str:
+def checks():
     """The examples as a file of checks, each with the markers that the page leaves out."""
     parts = ["import numpy as np\nimport pytest\n\nfrom course.scoring import kit\n", *blocks("top")]
     parts += [block.replace('@pytest.mark.requires("other_check")', "#") for block in blocks("check")]
@@ -50,7 +46,7 @@ def checks() -> str:
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def written(tmp_path_factory):
     """A course with the exercise that the page is about."""
     root = tmp_path_factory.mktemp("growth")
     shutil.copytree(ROOT / "tests" / "fixtures" / "mini_course", root, dirs_exist_ok=True)
@@ -69,26 +65,26 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def growth(written: Path, monkeypatch: pytest.MonkeyPatch) -> Catalog:
+def growth(written, monkeypatch):
     """That course, in use."""
     monkeypatch.setenv("COURSE_CONTENT", str(written))
     return Catalog()
 
 
-def graded(catalog: Catalog, source: str) -> dict[str, CheckResult]:
+def graded(catalog, source):
     exercise = catalog.exercise("growth")
     with GradingSession(exercise, catalog, scope="public") as session:
         verdict = session.grade(Submission({exercise.module: source.encode()}))
     return {check.id: check for check in verdict.checks}
 
 
-def test_every_example_passes_on_the_submission_that_the_page_shows(growth: Catalog) -> None:
+def test_every_example_passes_on_the_submission_that_the_page_shows(growth):
     found = graded(growth, blocks("submission")[0])
     assert len(found) == 1 + len(blocks("example"))
     assert {name: check.message for name, check in found.items() if check.status is not Status.PASS} == {}
 
 
-def test_every_example_can_fail_and_the_diagnosis_is_found(growth: Catalog) -> None:
+def test_every_example_can_fail_and_the_diagnosis_is_found(growth):
     found = graded(growth, WRONG)
     assert [name for name, check in found.items() if check.status is Status.PASS] == []
     assert [name for name, check in found.items() if check.status is Status.GRADER_ERROR] == []
@@ -96,7 +92,7 @@ def test_every_example_can_fail_and_the_diagnosis_is_found(growth: Catalog) -> N
 
 
 @pytest.fixture
-def known(growth: Catalog) -> Iterator[Catalog]:
+def known(growth):
     """The same exercise, with its words and wrong programs as data."""
     student, instructor = (growth.content.root / part / "growth" for part in ("exercises", "solutions"))
     instructor.mkdir()
@@ -110,7 +106,7 @@ def known(growth: Catalog) -> Iterator[Catalog]:
         (student / name).unlink(missing_ok=True)
 
 
-def test_a_wrong_program_that_is_known_by_its_answers_is_told_the_words_of_its_code(known: Catalog) -> None:
+def test_a_wrong_program_that_is_known_by_its_answers_is_told_the_words_of_its_code(known):
     """And not those of the function that looks for the mistake, which are others."""
     assert build(known, known.exercise("growth"))
     source = blocks("submission")[0] + "\ndef double(x):\n    return x * abs(x)\n"
@@ -121,11 +117,9 @@ def test_a_wrong_program_that_is_known_by_its_answers_is_told_the_words_of_its_c
         assert found[name].message.endswith(known_words("growth")("SQUARES_INSTEAD").looks_like)
 
 
-def test_the_figure_of_the_page_can_be_drawn_and_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_figure_of_the_page_can_be_drawn_and_read(tmp_path, monkeypatch):
     (source,) = blocks("figure")
-    module: dict[str, Any] = {}
+    module = {}
     exec(source, module)
     monkeypatch.setitem(registry.FIGURES, "contact-bounce", ("contact", "bounce"))
     monkeypatch.setattr(contact, "bounce", module["bounce"], raising=False)
@@ -134,29 +128,20 @@ def test_the_figure_of_the_page_can_be_drawn_and_read(
     assert "course author pictures contact-bounce" in TEXT
 
 
-def test_the_report_shows_both_sections(growth: Catalog) -> None:
+def test_the_report_shows_both_sections(growth):
     source = Submission({"growth.py": blocks("submission")[0].encode()})
     made = report_of(growth.exercise("growth"), growth, source)
     assert [section.title for section in made.sections] == ["Once", "Often"]
     assert made.sections[0].rows == (("1.5", "3"),)
 
 
-def test_every_name_of_the_kit_is_on_the_page() -> None:
+def test_every_name_of_the_kit_is_on_the_page():
     code = "\n".join(re.findall(r"^```python \w+\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL))
     named = set(re.findall(r"kit\.(\w+)", TEXT))
     assert named - set(kit.__all__) == set()
     assert set(kit.__all__) - named == set()
     # What is used with others is told in a sentence; whatever stands alone has an example that is run.
-    told = {
-        "Words",
-        "fail",
-        "finding_for",
-        "in_range",
-        "known_answers",
-        "reference",
-        "sibling",
-        "words",
-    }
+    told = {"Words", "fail", "finding_for", "in_range", "known_answers", "reference", "sibling", "words"}
     types = {name for name in kit.__all__ if name[0].isupper()} - {
         "Diagnosis",
         "Problem",

@@ -1,7 +1,5 @@
 """At home on other systems: without what only POSIX has, with other encodings, paths and consoles."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """A name in double backquotes exists: ``course.ids``, ``History`` or ``loops.fold`` leads somewhere."""
 
-from __future__ import annotations
-
 import ast
 import builtins
 import importlib
@@ -19,19 +17,19 @@ PATHS = sorted(path for path in (ROOT / "course").rglob("*.py") if LESSONS not i
 PAGES = sorted([*(ROOT / "docs").rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
 #: The names of files look like dotted names.
 FILES = ("py", "js", "md", "toml", "json", "jsonl", "csv", "sqlite", "coursepack")
-#: ``a.b``, with or without brackets after it, and ``LikeThis``.
 #: What a scene's file calls a body of its own.
 OF_SCENES = "body"
+#: ``a.b``, with or without brackets after it, and ``LikeThis``.
 NAME = re.compile(rf"``(?!\S+\.(?:{'|'.join(FILES)})``)(_?[A-Z][a-z]\w*|\w+(?:\.\w+)+)(?:\(\))?``")
 
 
-def _module(path: Path) -> str:
+def _module(path):
     return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
-def _bound(tree: ast.AST) -> dict[str, ast.AST]:
+def _bound(tree):
     """What a module or a class binds, wherever in it; an attribute that a method sets is one, too."""
-    found: dict[str, ast.AST] = {}
+    found = {}
     for node in ast.walk(tree):
         match node:
             case ast.ClassDef(name=name) | ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
@@ -44,12 +42,12 @@ def _bound(tree: ast.AST) -> dict[str, ast.AST]:
 
 
 @cache
-def _modules() -> dict[str, dict[str, ast.AST]]:
+def _modules():
     return {_module(path): _bound(ast.parse(path.read_text(encoding="utf-8"))) for path in PATHS}
 
 
 @cache
-def _by_last() -> dict[str, list[str]]:
+def _by_last():
     """The modules by the last part of their names."""
     found = defaultdict(list)
     for module in _modules():
@@ -58,7 +56,7 @@ def _by_last() -> dict[str, list[str]]:
 
 
 @cache
-def _classes() -> dict[str, list[ast.AST]]:
+def _classes():
     found = defaultdict(list)
     for names in _modules().values():
         for name, node in names.items():
@@ -67,7 +65,7 @@ def _classes() -> dict[str, list[ast.AST]]:
     return found
 
 
-def _has(module: str, rest: list[str]) -> bool:
+def _has(module, rest):
     """Whether a module of the course has a name, a class's attribute, or a module below it."""
     while rest and f"{module}.{rest[0]}" in _modules():
         module, *rest = f"{module}.{rest[0]}", *rest[1:]
@@ -77,7 +75,7 @@ def _has(module: str, rest: list[str]) -> bool:
     return node is not None and all(name in _bound(node) for name in rest[1:])
 
 
-def _exists(name: str) -> bool:
+def _exists(name):
     first, *rest = name.split(".")
     if first == "course":
         return _has("course", rest)
@@ -91,7 +89,7 @@ def _exists(name: str) -> bool:
     return hasattr(builtins, first) or (first[:1].islower() and not rest[-1][:1].isupper())
 
 
-def _lost(path: Path, name: re.Pattern[str]) -> list[str]:
+def _lost(path, name):
     lines = enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
     return [
         f"line {n}: {found[1]}" for n, line in lines for found in name.finditer(line) if not _exists(found[1])
@@ -99,12 +97,12 @@ def _lost(path: Path, name: re.Pattern[str]) -> list[str]:
 
 
 @pytest.mark.parametrize("path", PATHS, ids=_module)
-def test_every_name_in_double_backquotes_exists(path: Path) -> None:
+def test_every_name_in_double_backquotes_exists(path):
     assert not _lost(path, NAME)
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
-def test_every_name_of_the_program_on_a_page_exists(path: Path) -> None:
+def test_every_name_of_the_program_on_a_page_exists(path):
     assert not _lost(path, re.compile(r"`(course(?:\.\w+)+)(?:\(.*?\))?`"))
 
 
@@ -112,5 +110,5 @@ def test_every_name_of_the_program_on_a_page_exists(path: Path) -> None:
     "name",
     ["course.nowhere", "Nowhere", "History.nowhere", "loops.nowhere", "math.nowhere", "merged.Nowhere"],
 )
-def test_a_name_that_does_not_exist_is_found(name: str) -> None:
+def test_a_name_that_does_not_exist_is_found(name):
     assert not _exists(name)

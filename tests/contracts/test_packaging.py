@@ -4,8 +4,6 @@ The archives are built offline from a copy of the repository in which traps are 
 and files in the folders that must never reach a student.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import platform
@@ -84,7 +82,7 @@ FORBIDDEN = {
 
 
 @pytest.fixture(scope="module")
-def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def source(tmp_path_factory):
     """A copy of the repository with the traps laid."""
     folder = tmp_path_factory.mktemp("source") / "repo"
     folder.mkdir()
@@ -103,7 +101,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def _build(source: Path, out: Path, kind: str) -> tuple[Path, str]:
+def _build(source, out, kind):
     """Build offline with the backend that is installed; the archive, and what the builder said.
 
     Args:
@@ -118,17 +116,17 @@ def _build(source: Path, out: Path, kind: str) -> tuple[Path, str]:
 
 
 @pytest.fixture(scope="module")
-def built(source: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Path, str]]:
+def built(source, tmp_path_factory):
     """By kind, what is handed out and what the builder said."""
     return {kind: _build(source, tmp_path_factory.mktemp(kind), kind) for kind in ("wheel", "sdist")}
 
 
 @pytest.fixture(scope="module")
-def wheel(built: dict[str, tuple[Path, str]]) -> Path:
+def wheel(built):
     return built["wheel"][0]
 
 
-def _names(archive: Path) -> list[str]:
+def _names(archive):
     """Files of an archive, without the folder an sdist wraps around them."""
     if archive.suffix == ".whl":
         with zipfile.ZipFile(archive) as wheel:
@@ -137,7 +135,7 @@ def _names(archive: Path) -> list[str]:
         return [member.name.partition("/")[2] for member in tar.getmembers() if member.isfile()]
 
 
-def _student_files(folder: str) -> set[str]:
+def _student_files(folder):
     """What a student must get of a folder: everything that git would keep."""
     return {
         path.relative_to(ROOT).as_posix()
@@ -147,9 +145,7 @@ def _student_files(folder: str) -> set[str]:
 
 
 @pytest.mark.parametrize("kind", ["wheel", "sdist"])
-def test_only_what_has_a_role_for_students_is_inside_and_what_has_none_is_named(
-    built: dict[str, tuple[Path, str]], kind: str
-) -> None:
+def test_only_what_has_a_role_for_students_is_inside_and_what_has_none_is_named(built, kind):
     archive, said = built[kind]
     names = _names(archive)
     assert [name for name in names if FORBIDDEN & set(name.split("/"))] == []
@@ -161,11 +157,11 @@ def test_only_what_has_a_role_for_students_is_inside_and_what_has_none_is_named(
     assert not {name for name in named if "__pycache__" in name or "_cache" in name}
 
 
-def test_a_checkout_has_no_file_without_a_role(tmp_path: Path) -> None:
+def test_a_checkout_has_no_file_without_a_role(tmp_path):
     assert " role: " not in _build(ROOT, tmp_path, "wheel")[1]
 
 
-def test_git_has_no_say_in_what_is_inside(source: Path, wheel: Path, tmp_path: Path) -> None:
+def test_git_has_no_say_in_what_is_inside(source, wheel, tmp_path):
     copy = tmp_path / "repository"
     shutil.copytree(source, copy, symlinks=True)
     git = ["git", "-c", "user.name=n", "-c", "user.email=n@example.org"]
@@ -177,7 +173,7 @@ def test_git_has_no_say_in_what_is_inside(source: Path, wheel: Path, tmp_path: P
     assert sorted(_names(_build(copy, tmp_path, "wheel")[0])) == sorted(_names(wheel))
 
 
-def test_no_line_of_a_solution_or_grader_is_inside_the_wheel(wheel: Path) -> None:
+def test_no_line_of_a_solution_or_grader_is_inside_the_wheel(wheel):
     """Moved or renamed, a hidden file would still be found by what it says."""
     hidden = [*ROOT.glob("tests/graders/*/*.py")]
     for folder in ("*", "warm-ups/*", "warm-ups/*/accepted"):
@@ -195,7 +191,7 @@ def test_no_line_of_a_solution_or_grader_is_inside_the_wheel(wheel: Path) -> Non
     assert [str(path) for path, line in marks.items() if line in inside] == []
 
 
-def test_the_wheel_has_everything_a_student_needs(wheel: Path) -> None:
+def test_the_wheel_has_everything_a_student_needs(wheel):
     names = set(_names(wheel))
     assert {f"course/content/{name}" for name in _student_files("exercises")} <= names
     assert {f"course/content/{name}" for name in _student_files("quiz")} <= names
@@ -208,7 +204,7 @@ def test_the_wheel_has_everything_a_student_needs(wheel: Path) -> None:
     assert "course/lessons/syllabus.toml" in names
 
 
-def test_the_wheel_notes_the_python_and_the_numpy_that_grade(wheel: Path) -> None:
+def test_the_wheel_notes_the_python_and_the_numpy_that_grade(wheel):
     with zipfile.ZipFile(wheel) as archive:
         told = json.loads(archive.read("course/graded_with.json"))
     assert (told["python"], told["numpy"]) == (platform.python_version(), np.__version__)
@@ -216,15 +212,13 @@ def test_the_wheel_notes_the_python_and_the_numpy_that_grade(wheel: Path) -> Non
     assert "trapezoid" in told["names"]["numpy"]
 
 
-def test_the_wheel_installs_one_package_and_nothing_beside_it(wheel: Path) -> None:
+def test_the_wheel_installs_one_package_and_nothing_beside_it(wheel):
     tops = {name.split("/")[0] for name in _names(wheel)}
     (metadata,) = tops - {"course"}
     assert metadata.endswith(".dist-info")
 
 
-def test_the_source_archive_builds_the_same_wheel(
-    built: dict[str, tuple[Path, str]], wheel: Path, tmp_path: Path
-) -> None:
+def test_the_source_archive_builds_the_same_wheel(built, wheel, tmp_path):
     with tarfile.open(built["sdist"][0]) as tar:
         tar.extraction_filter = getattr(tarfile, "data_filter", None)  # from 3.11.4 on
         tar.extractall(tmp_path)
@@ -255,7 +249,7 @@ sys.path[:] = [entry for entry in sys.path if entry not in before] + before
 """
 
 
-def _ask(folder: Path, code: str, **environment: str) -> str:
+def _ask(folder, code, **environment):
     """What a fresh interpreter says that finds the package only as given."""
     kept = {key: value for key, value in os.environ.items() if not key.startswith(("COURSE_", "PYTHON"))}
     done = subprocess.run(
@@ -270,7 +264,7 @@ def _ask(folder: Path, code: str, **environment: str) -> str:
     return done.stdout
 
 
-def test_an_unpacked_wheel_finds_its_content_and_is_a_students(wheel: Path, tmp_path: Path) -> None:
+def test_an_unpacked_wheel_finds_its_content_and_is_a_students(wheel, tmp_path):
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(tmp_path / "site")
     said = json.loads(_ask(tmp_path, _ASK, PYTHONPATH=str(tmp_path / "site")))
@@ -280,7 +274,7 @@ def test_an_unpacked_wheel_finds_its_content_and_is_a_students(wheel: Path, tmp_
     assert said["lessons"] >= 1
 
 
-def test_an_editable_installation_reads_the_checkout(source: Path, tmp_path: Path) -> None:
+def test_an_editable_installation_reads_the_checkout(source, tmp_path):
     site = tmp_path / "site"
     with zipfile.ZipFile(_build(source, tmp_path, "editable")[0]) as archive:
         archive.extractall(site)
@@ -291,7 +285,7 @@ def test_an_editable_installation_reads_the_checkout(source: Path, tmp_path: Pat
     assert "integrators" in said["exercises"]
 
 
-def _pinned() -> dict[str, str]:
+def _pinned():
     """What CI installs: names and versions; each line has one digest and no address."""
     lines = [line for line in (ROOT / ".ci" / "pinned.txt").read_text("utf-8").splitlines() if line[0] != "#"]
     found = [re.fullmatch(r"([a-z0-9-]+)==(\S+) --hash=sha256:[0-9a-f]{64}", line) for line in lines]
@@ -299,7 +293,7 @@ def _pinned() -> dict[str, str]:
     return {match[1]: match[2] for match in found if match}
 
 
-def test_what_ci_installs_is_pinned_and_is_what_the_course_asks_for() -> None:
+def test_what_ci_installs_is_pinned_and_is_what_the_course_asks_for():
     pinned = _pinned()
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     (extras,) = re.findall(r"-e '\.\[([a-z,]+)\]'", (ROOT / ".ci" / "run").read_text("utf-8"))
@@ -317,7 +311,7 @@ def test_what_ci_installs_is_pinned_and_is_what_the_course_asks_for() -> None:
             assert pinned[name] in requirement.specifier, f"{requirement}: run .ci/pin again"
 
 
-def test_actions_are_fetched_by_commit() -> None:
+def test_actions_are_fetched_by_commit():
     used = [
         line for path in (ROOT / ".github" / "workflows").glob("*.yml")
         for line in path.read_text("utf-8").splitlines() if "uses:" in line

@@ -1,6 +1,4 @@
-"""What the README promises at first sight: its pictures, its four lines, its length."""
-
-from __future__ import annotations
+"""What the README shows and counts at first sight, and where its links lead."""
 
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """docs/scripts.md is right: its exit codes are those of the errors, and what it shows can be run."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The house rules hold: style, types, and imports that go down only. One test command runs them all."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 _LINT_IMPORTS = "import sys; from importlinter.cli import lint_imports_command as run; sys.exit(run())"
 
 
-def _run(*command: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
+def _run(*command, cwd=ROOT):
     return subprocess.run(
         [sys.executable, *command], cwd=cwd, capture_output=True, text=True, check=False, timeout=300
     )
@@ -43,7 +41,7 @@ def test_the_repository_passes(command: tuple[str, ...]) -> None:
         if "\nfrom tests." in path.read_text("utf-8")
     ],
 )
-def test_a_script_starts_beside_a_package_that_installs_tests_of_its_own(script: str, tmp_path: Path) -> None:
+def test_a_script_starts_beside_a_package_that_installs_tests_of_its_own(script, tmp_path):
     """As the engine `dartpy` does: its `tests` stood in for ours, which was no package."""
     (tmp_path / "tests").mkdir()
     (tmp_path / "tests" / "__init__.py").touch()
@@ -73,29 +71,29 @@ sys.exit(pytest.main(["--collect-only", "-q", "-n0", "-p", "no:cacheprovider", "
 """
 
 
-def test_tests_are_collected_without_any_extra() -> None:
+def test_tests_are_collected_without_any_extra():
     """As the README's second command has it; CI installs them all, and would hide such an import."""
     done = _run("-c", _WITHOUT_EXTRAS)
     assert done.returncode == 0, f"{done.stdout[-2000:]}\n{done.stderr[-1000:]}"
 
 
 class _Item:
-    def __init__(self, nodeid: str, long: bool = False) -> None:
+    def __init__(self, nodeid, long=False):
         self.nodeid, self.long = nodeid, long
 
-    def get_closest_marker(self, _: str) -> bool:
+    def get_closest_marker(self, _):
         return self.long
 
 
-def test_what_comes_in_turn_comes_once_in_its_days(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_comes_in_turn_comes_once_in_its_days(monkeypatch):
     monkeypatch.setattr(
         "tests.turns.listed", lambda: {"a::many": (4, 0), "a::one": (4, 1), "a::many[9]": (4, 2)}
     )
     always = [_Item("a::other"), _Item("a::one_more[1]"), *(_Item(f"a::many[{n}]", long=True) for n in "xyz")]
     turns = [*(_Item(f"a::many[{n}]") for n in range(10)), _Item("a::one")]
-    seen: list[_Item] = []
+    seen = []
     for day in range(363, 367):
-        later = of_other_days([*always, *turns], day)  # type: ignore[list-item]
+        later = of_other_days([*always, *turns], day)
         today = [item for item in turns if item not in later]
         assert not {*map(id, always)} & {*map(id, later)}
         assert 2 <= len(today) <= 4
@@ -103,14 +101,14 @@ def test_what_comes_in_turn_comes_once_in_its_days(monkeypatch: pytest.MonkeyPat
     assert sorted(map(id, seen)) == sorted(map(id, turns))
 
 
-def test_the_list_of_what_comes_in_turn_says_what_takes_longest() -> None:
+def test_the_list_of_what_comes_in_turn_says_what_takes_longest():
     many = {f"a::many[{n}]": 0.5 for n in range(40)}
     one_of_them = {"a::f[x]": 9.0, "a::f[y]": 0.2, "a::f[z]": 0.2}
     times = {**many, **one_of_them, "a::quick": 0.2, "a::long": 30.0}
     assert lines_of(times) == ["8 a::long", "10 a::many", "8 a::f[x]"]
 
 
-def test_times_are_those_of_the_tests_in_a_file_that_pytest_wrote(tmp_path: Path) -> None:
+def test_times_are_those_of_the_tests_in_a_file_that_pytest_wrote(tmp_path):
     (tmp_path / "test_it.py").write_text("import time\ndef test_a(): time.sleep(0.2)\ndef test_b(): pass\n")
     done = _run("-m", "pytest", "-q", "--rootdir", tmp_path, "--junitxml", tmp_path / "it.xml", tmp_path)
     assert done.returncode == 0, done.stdout
@@ -120,7 +118,7 @@ def test_times_are_those_of_the_tests_in_a_file_that_pytest_wrote(tmp_path: Path
     assert min(times, key=lambda name: times[name]) == "test_it.py::test_b"
 
 
-def test_what_comes_in_turn_is_there() -> None:
+def test_what_comes_in_turn_is_there():
     """A test that has another name runs every time, and a run takes longer than it says."""
     there = {name.partition("[")[0] for name in listed()}
     for path, function in (name.split("::") for name in sorted(there)):

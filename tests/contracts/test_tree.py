@@ -1,7 +1,5 @@
 """The table of rooms in CONTRIBUTING is that of the program; COURSE_UPDATE_GOLDEN=1 writes it anew."""
 
-from __future__ import annotations
-
 import ast
 import os
 import re
@@ -15,7 +13,7 @@ ROW = re.compile(r"\| `(course/[\w/]*)` \| (\d+) \| ([\d,]+) \| (.+) \|")
 NEAR, FEW = 0.2, 100
 
 
-def rooms() -> dict[str, tuple[int, int, str]]:
+def rooms():
     """By room: its files, their lines, and the first sentence of its face."""
     found = {}
     for face in sorted((ROOT / "course").rglob("__init__.py")):
@@ -27,7 +25,7 @@ def rooms() -> dict[str, tuple[int, int, str]]:
     return found
 
 
-def table(there: dict[str, tuple[int, int, str]]) -> str:
+def table(there):
     rows = (
         f"| `{room}` | {files} | {round(lines, -2):,} | {words} |\n"
         for room, (files, lines, words) in there.items()
@@ -35,7 +33,7 @@ def table(there: dict[str, tuple[int, int, str]]) -> str:
     return HEAD + "".join(rows)
 
 
-def test_the_table_of_rooms_is_that_of_the_program() -> None:
+def test_the_table_of_rooms_is_that_of_the_program():
     there = rooms()
     text = PAGE.read_text("utf-8")
     if os.environ.get("COURSE_UPDATE_GOLDEN"):

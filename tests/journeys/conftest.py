@@ -6,8 +6,6 @@ commands run in the tests' own process; the parts of a journey that come in turn
 a process, and every part is tried.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -16,16 +14,14 @@ import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import pytest
 
 from course.catalog.models import Exercise
 from tests.command_line import in_process
 
-if TYPE_CHECKING:
-    T = TypeVar("T")
-
+T = TypeVar("T")
 ROOT = Path(__file__).resolve().parents[2]
 #: Whether this run tries everything.
 ALL = os.environ.get("COURSE_JOURNEYS") == "all"

@@ -6,15 +6,13 @@ counts.
 """
 
 import json
-from pathlib import Path
 
 import pytest
 
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise
 from course.notebooks.build import exercise_cells
 from course.notebooks.cells import document
-from tests.journeys.conftest import Way, model
+from tests.journeys.conftest import model
 from tests.journeys.test_notebook import public
 
 CATALOG = Catalog()
@@ -79,7 +77,7 @@ PLACES = ("above", "between", "below")
 STUDENTS = 18
 
 
-def in_a_file(exercise: Exercise, left: str, place: str) -> str:
+def in_a_file(exercise, left, place):
     """The model with these lines in it."""
     lines = model(exercise).split("\n")
     starts = [number for number, line in enumerate(lines) if line.startswith(("def ", "class ", "@"))]
@@ -87,7 +85,7 @@ def in_a_file(exercise: Exercise, left: str, place: str) -> str:
     return "\n".join([*lines[:at], left, "", "", *lines[at:]])
 
 
-def in_a_notebook(exercise: Exercise, left: str, place: str) -> bytes:
+def in_a_notebook(exercise, left, place):
     """The model's notebook with a cell more, or with these lines at the end of a function's cell."""
     made = document(
         exercise_cells(exercise, model(exercise)), kind="exercise", id=exercise.id, version=CATALOG.version
@@ -107,7 +105,7 @@ def in_a_notebook(exercise: Exercise, left: str, place: str) -> bytes:
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("as_handed_in")
-def test_what_submit_says_is_what_the_run_says(student: Way, instructor: Way, tmp_path: Path) -> None:
+def test_what_submit_says_is_what_the_run_says(student, instructor, tmp_path):
     said, what = {}, {}
     for number in range(STUDENTS):
         name = f"s{number:02}"

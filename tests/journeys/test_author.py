@@ -4,10 +4,8 @@ import json
 import math
 import re
 import shutil
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import count
-from pathlib import Path
 
 import pytest
 
@@ -53,31 +51,29 @@ mistakes(
 
 
 @pytest.fixture
-def mini(tmp_path: Path) -> Path:
+def mini(tmp_path):
     """The folder of a course that may be written to: a copy."""
     return shutil.copytree(MINI, tmp_path / "mini")
 
 
 @pytest.fixture
-def author(instructor: Way, mini: Path) -> Way:
+def author(instructor, mini):
     """Commands of its author, who has a checkout of the program."""
     return replace(instructor, environment={**instructor.environment, "COURSE_CONTENT": str(mini)})
 
 
-def put(path: Path, old: str, new: str) -> None:
+def put(path, old, new):
     text = path.read_text("utf-8")
     assert text.count(old) == 1, f"{path} has {old!r} {text.count(old)} times"
     path.write_text(text.replace(old, new), "utf-8")
 
 
-def fill(path: Path, words: Callable[[re.Match[str]], str]) -> None:
+def fill(path, words):
     text = BLANK.sub(words, path.read_text("utf-8"))
     path.write_text(re.sub(r'raise NotImplementedError\("(.*)"\)', r"\1", text), "utf-8")
 
 
-def test_a_new_exercise_is_proved_and_a_class_is_graded_with_it(
-    author: Way, mini: Path, tmp_path: Path
-) -> None:
+def test_a_new_exercise_is_proved_and_a_class_is_graded_with_it(author, mini, tmp_path):
     author("author", "new", "exercise", "tripling", "--function", "tripling(x)", "--lesson", "half-as-much")
     fill_tripling(mini)
     hidden = mini / "graders" / "tripling" / "checks.py"
@@ -111,9 +107,7 @@ def test_a_new_exercise_is_proved_and_a_class_is_graded_with_it(
     assert "\n2 problems in" in said
 
 
-def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(
-    author: Way, mini: Path, tmp_path: Path
-) -> None:
+def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(author, mini, tmp_path):
     known = ("--function", "third(x)", "--title", "One third", "--summary", "A third of a number.")
     author("author", "new", "warmup", "first-third", "--lesson", "half-as-much", *known)
     for folder, files in THIRD.items():
@@ -145,13 +139,11 @@ def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(
     assert "this warm-up is done" in student("check", "first-third", cwd=work).stdout
 
 
-def sentences(first: int = 1) -> Iterator[str]:
+def sentences(first=1):
     return (f"Sentence {number} of 2026" for number in count(first))
 
 
-def test_a_new_lesson_and_a_new_question_are_proved_read_and_answered(
-    author: Way, mini: Path, tmp_path: Path
-) -> None:
+def test_a_new_lesson_and_a_new_question_are_proved_read_and_answered(author, mini, tmp_path):
     author("author", "new", "lesson", "three-times")
     # Their numbers are years: any other number in a lesson is to come from code.
     lesson, words = mini / "lessons" / "three-times.md", sentences(1901)
@@ -184,7 +176,7 @@ def test_a_new_lesson_and_a_new_question_are_proved_read_and_answered(
         assert json.loads(reply.stdout)["score"] == score
 
 
-def test_a_new_scene_runs_and_agrees_with_its_theory(author: Way, tmp_path: Path) -> None:
+def test_a_new_scene_runs_and_agrees_with_its_theory(author, tmp_path):
     """From the template itself: `author new scene` would write it into the program's own folder, whichever
     course is chosen, and no test may write into the checkout."""
     scene = tmp_path / "falling.toml"

@@ -32,7 +32,7 @@ ON_ONE_MACHINE, ON_A_CLUSTER = ("-j", str(GRADERS)), ("--local-cluster", str(GRA
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux")
 
 
-def make_class(folder: Path, students: int) -> dict[str, float]:
+def make_class(folder, students):
     """Every third student is wrong about one function; returns what each must get."""
     due = {}
     for number in range(students):
@@ -59,7 +59,7 @@ _NOTE = """    import os, time
 """
 
 
-def make_course(folder: Path) -> Path:
+def make_course(folder):
     """The miniature course, with a hidden check that notes each grading, kept or not, and waits at a gate."""
     shutil.copytree(MINI, folder)
     checks = folder / "graders" / "doubling" / "checks.py"
@@ -69,18 +69,18 @@ def make_course(folder: Path) -> Path:
     return folder
 
 
-def noted(scratch: Path) -> list[str]:
+def noted(scratch):
     """Who was graded, by the check's own account, as often and in the order as they were."""
     path = scratch.parent / "gradings"
     numbers = path.read_text("ascii").split() if path.exists() else []
     return [f"student-{int(number):04}" for number in numbers]
 
 
-def command(*words: object, exercise: str = "doubling") -> list[str]:
+def command(*words, exercise="doubling"):
     return [sys.executable, "-m", "course", "grade", "run", *map(str, words), "--exercise", exercise]
 
 
-def environment(scratch: Path, content: Path = MINI, gate: Path | None = None) -> dict[str, str]:
+def environment(scratch, content=MINI, gate=None):
     scratch.mkdir(exist_ok=True)
     path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     ours = {"COURSE_CONTENT": str(content), "GRADINGS": str(scratch.parent / "gradings")}
@@ -88,7 +88,7 @@ def environment(scratch: Path, content: Path = MINI, gate: Path | None = None) -
     return {**os.environ, **ours, "PYTHONPATH": path, "TMPDIR": str(scratch)}
 
 
-def kind_of(pid: int, mine: dict[int, tuple[int, str]]) -> str:
+def kind_of(pid, mine):
     """What a process of a run is there for."""
     parent, line = mine[pid]
     if "course.grading.running.grader" in line:
@@ -104,14 +104,14 @@ def kind_of(pid: int, mine: dict[int, tuple[int, str]]) -> str:
     return "helper"
 
 
-def kill_one(coordinator: subprocess.Popen[bytes], kind: str, rng: random.Random) -> None:
+def kill_one(coordinator, kind, rng):
     """Kill a process of this run."""
     mine = below(coordinator.pid)
     of_that_kind = sorted(pid for pid in mine if kind_of(pid, mine) == kind)
     os.kill(coordinator.pid if kind == "coordinator" else rng.choice(of_that_kind), signal.SIGKILL)
 
 
-def said(log: Path) -> list[str]:
+def said(log):
     """The students whose results a run has reported so far."""
     found = []
     for raw in log.read_bytes().splitlines():
@@ -122,9 +122,9 @@ def said(log: Path) -> list[str]:
     return found
 
 
-def rounds(kinds: list[str]) -> list[list[str]]:
+def rounds(kinds):
     """Deaths by the attempt in which they happen: that of a coordinator ends one."""
-    found: list[list[str]] = [[]]
+    found = [[]]
     for kind in kinds:
         found[-1].append(kind)
         if kind == "coordinator":
@@ -132,7 +132,7 @@ def rounds(kinds: list[str]) -> list[list[str]]:
     return found
 
 
-def way(kinds: list[str]) -> tuple[str, str]:
+def way(kinds):
     """Where an attempt grades: on a cluster if a worker of one is to die."""
     return ON_A_CLUSTER if "dask worker" in kinds else ON_ONE_MACHINE
 
@@ -143,20 +143,20 @@ class Gate:
     Both graders of a run wait here in the middle of a grading, each for its turn, when a death comes.
     """
 
-    def __init__(self, out: Path, between: range) -> None:
+    def __init__(self, out, between):
         self.path = out.parent / "gate"
         self._scratch = out.parent / "scratch"
         self._between = between
         self._rng = random.Random(20261121)
-        self._cut: set[str] = set()
+        self._cut = set()
         self._let(self._rng.choice(between))
 
-    def _let(self, gradings: int) -> None:
+    def _let(self, gradings):
         self._open_to = gradings
         with self.path.open("ab") as file:
             file.truncate(gradings * _WIDTH)
 
-    def holds(self, reported: set[str]) -> bool:
+    def holds(self, reported):
         """Whether both graders wait, and none of whom a death would interrupt was interrupted before."""
         names = noted(self._scratch)
         if len(names) < self._open_to + GRADERS:
@@ -166,25 +166,25 @@ class Gate:
             return False
         return True
 
-    def kill(self, coordinator: subprocess.Popen[bytes], kind: str, reported: set[str]) -> None:
+    def kill(self, coordinator, kind, reported):
         """Kill a process of the run that waits, and let what is left of it go on."""
         names = noted(self._scratch)
         kill_one(coordinator, kind, self._rng)
         self._cut |= set(names) - reported
         self._let(len(names) + self._rng.choice(self._between))
 
-    def open(self) -> None:
+    def open(self):
         """Let everybody pass."""
         self._let(10**6)
 
 
-def disturbed(run: list[str], out: Path, kills: list[str], between: range) -> Counter[str]:
+def disturbed(run, out, kills, between):
     """Run until everything is graded, killing on the way; returns how often each student was reported.
 
     Args:
         between: how many gradings there may be between two deaths.
     """
-    reported: Counter[str] = Counter()
+    reported = Counter()
     waiting = rounds(kills)
     gate = Gate(out, between)
     for attempt in range(MOST_ATTEMPTS):
@@ -210,7 +210,7 @@ def disturbed(run: list[str], out: Path, kills: list[str], between: range) -> Co
     pytest.fail("it never finished")
 
 
-def outcomes(out: Path) -> dict[str, object]:
+def outcomes(out):
     """By student, what every check gave."""
     with Gradebook(out / "gradebook.sqlite") as book:
         return {
@@ -219,7 +219,7 @@ def outcomes(out: Path) -> dict[str, object]:
         }
 
 
-def check_undisturbed(tmp_path: Path, students: int, kills: list[str], between: range) -> None:
+def check_undisturbed(tmp_path, students, kills, between):
     """Kill and resume, then compare with a run that nobody disturbed."""
     due = make_class(tmp_path / "class", students)
     make_course(tmp_path / "content")
@@ -242,12 +242,12 @@ def check_undisturbed(tmp_path: Path, students: int, kills: list[str], between: 
     assert not list((tmp_path / "scratch").iterdir())
 
 
-def test_a_run_that_is_killed_here_and_there_ends_as_an_undisturbed_one(tmp_path: Path) -> None:
+def test_a_run_that_is_killed_here_and_there_ends_as_an_undisturbed_one(tmp_path):
     check_undisturbed(tmp_path, 50, ["grader", "zygote", "coordinator"], range(4, 12))
 
 
 @pytest.mark.soak
-def test_two_thousand_submissions_survive_twenty_kills(tmp_path: Path) -> None:
+def test_two_thousand_submissions_survive_twenty_kills(tmp_path):
     kinds = ["coordinator"] * 7 + ["grader"] * 4 + ["zygote"] * 4
     kinds += ["dask worker" if HAS_CLUSTER else "grader"] * 5
     random.Random(5).shuffle(kinds)
@@ -277,7 +277,7 @@ diff -r "$DISK/out" "$LOGS/out" && echo same
 """
 
 
-def on_a_small_disk(tmp_path: Path) -> tuple[list[str], dict[str, str]]:
+def on_a_small_disk(tmp_path):
     """What the script printed, and by name what each command said and what was listed."""
     if shutil.which("unshare") is None:
         pytest.skip("needs unshare, to have a small disk")
@@ -297,7 +297,7 @@ def on_a_small_disk(tmp_path: Path) -> tuple[list[str], dict[str, str]]:
     return done.stdout.split(), said
 
 
-def test_a_full_disk_is_said_and_the_run_goes_on_when_there_is_room(tmp_path: Path) -> None:
+def test_a_full_disk_is_said_and_the_run_goes_on_when_there_is_room(tmp_path):
     due = make_class(tmp_path / "class", 60)
     printed, said = on_a_small_disk(tmp_path)
     assert printed == ["4", "0", "4", "0", "4", "same"], said

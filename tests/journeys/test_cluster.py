@@ -10,9 +10,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -20,7 +18,6 @@ from course.catalog.load import Catalog
 from course.grading.cluster.coordinator import grade_on
 from course.grading.cluster.worker import grade_batch
 from course.grading.gradebook.book import Gradebook
-from course.grading.results.effective import Effective
 from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.graders import grader_version
@@ -43,30 +40,29 @@ pytestmark = [
 ]
 
 
-def dask_workers(parent: int) -> list[int]:
+def dask_workers(parent):
     return [pid for pid, (its, line) in below(parent).items() if its == parent and "spawn_main" in line]
 
 
 @pytest.fixture
-def catalog(monkeypatch: pytest.MonkeyPatch) -> Catalog:
+def catalog(monkeypatch):
     monkeypatch.setenv("COURSE_CONTENT", str(MINI))
     path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     monkeypatch.setenv("PYTHONPATH", path)
     return Catalog()
 
 
-def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Path, catalog: Catalog) -> None:
+def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path, catalog):
     """A death that no grader process can keep from its worker: a machine that runs out of memory."""
     from course.grading.cluster.connect import DaskWorkers, start_cluster
 
-    def deadly(payload: bytes) -> bytes:
+    def deadly(payload):
         import os
         import signal
 
         if b"whoever grades this dies" in payload:
             os.kill(os.getpid(), signal.SIGKILL)
-        answer: bytes = grade_batch(payload)
-        return answer
+        return grade_batch(payload)
 
     make_class(tmp_path / "class", 12)
     with (tmp_path / "class" / "student-0004" / "doubling.py").open("ab") as file:
@@ -87,9 +83,7 @@ def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Pat
 
 
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL], ids=["ctrl-c", "kill -9"])
-def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
-    tmp_path: Path, catalog: Catalog, sign: signal.Signals
-) -> None:
+def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(tmp_path, catalog, sign):
     """Ctrl-C reaches every process of the terminal, the workers too; kill -9 the coordinator alone."""
     students = 120
     make_class(tmp_path / "class", students)
@@ -105,8 +99,6 @@ def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
         text=True,
         start_new_session=True,
     ) as process:
-        assert process.stdout is not None
-        assert process.stderr is not None
         first = process.stdout.readline()
         assert "student-" in first
         if sign is signal.SIGINT:
@@ -133,9 +125,7 @@ def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
 
 
 @pytest.mark.parametrize("kill_at", [-1, 3], ids=["undisturbed", "a worker killed"])
-def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(
-    tmp_path: Path, catalog: Catalog, monkeypatch: pytest.MonkeyPatch, kill_at: int
-) -> None:
+def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(tmp_path, catalog, monkeypatch, kill_at):
     """Workers that start late, or again, judge by the snapshot too."""
     from course.grading.cluster.connect import local_cluster
 
@@ -145,9 +135,9 @@ def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(
     make_class(tmp_path / "class", 60)
     version = grader_version(course.exercise("doubling"), course)
     checks = tmp_path / "content" / "graders" / "doubling" / "checks.py"
-    seen: list[str] = []
+    seen = []
 
-    def report(item: Effective, *_: object) -> None:
+    def report(item, *_):
         seen.append(item.student)
         if len(seen) == 1:
             checks.write_text(checks.read_text().replace("-34.5,", "-35.5,"))
@@ -163,30 +153,25 @@ def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(
 
 
 @contextlib.contextmanager
-def scheduler_and_worker(environment: dict[str, str]) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
+def scheduler_and_worker(environment):
     """A Dask scheduler and one worker with a nanny, started as an instructor would start them."""
     started = []
     try:
         dask = [sys.executable, "-P", "-m", "distributed.cli.dask_scheduler"]
         plain = {"env": environment, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
-        scheduler = subprocess.Popen(
-            [*dask, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"],
-            **plain,  # type: ignore[call-overload]
-        )
+        scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"], **plain)
         started.append(scheduler)
         line = next(line for line in scheduler.stderr if "Scheduler at:" in line)
         address = line.split()[-1]
         plain["stderr"] = subprocess.DEVNULL
         worker = [sys.executable, "-P", "-m", "distributed.cli.dask_worker", address]
-        started.append(
-            subprocess.Popen([*worker, "--nthreads", "2", "--no-dashboard"], **plain)  # type: ignore[call-overload]
-        )
+        started.append(subprocess.Popen([*worker, "--nthreads", "2", "--no-dashboard"], **plain))
         yield address, started
     finally:
         stop(started)
 
 
-def stop(started: list[subprocess.Popen[str]]) -> None:
+def stop(started):
     for process in reversed(started):
         process.terminate()
     for process in started:
@@ -199,7 +184,7 @@ def stop(started: list[subprocess.Popen[str]]) -> None:
             process.stderr.close()
 
 
-def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path: Path, catalog: Catalog) -> None:
+def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path, catalog):
     make_class(tmp_path / "class", 300)
     environment = {**os.environ, "MARKER": str(tmp_path)}
     options = RunOptions(exercises=("doubling",), seed=3)
@@ -208,7 +193,7 @@ def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path: Path, cat
 
     with scheduler_and_worker(environment) as (address, (scheduler, _)):
 
-        def report(*_: object) -> None:
+        def report(*_):
             if scheduler.poll() is None:
                 scheduler.kill()
                 scheduler.wait()
@@ -229,7 +214,7 @@ def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path: Path, cat
     assert not left_running(tmp_path)
 
 
-def commands_of_the_page(port: int) -> list[str]:
+def commands_of_the_page(port):
     """The blocks of docs/cluster.md under "Two machines": certificates, scheduler, two of workers, the run.
 
     Both machines are this one, with one worker each, and the port is a free one; nothing else is changed.
@@ -246,7 +231,7 @@ def commands_of_the_page(port: int) -> list[str]:
 
 
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl is not installed")
-def test_the_page_for_two_machines_works_as_written(tmp_path: Path) -> None:
+def test_the_page_for_two_machines_works_as_written(tmp_path):
     """A setting left out first: one sentence, no folder left behind; the corrected command is the same."""
     with socket.create_server(("127.0.0.1", 0)) as sock:
         port = sock.getsockname()[1]
@@ -258,7 +243,7 @@ def test_the_page_for_two_machines_works_as_written(tmp_path: Path) -> None:
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
     }  # fmt: skip
 
-    def pasted(script: str) -> subprocess.CompletedProcess[str]:
+    def pasted(script):
         return subprocess.run(
             ["sh", "-c", script], check=False, cwd=alpha, env=environment, capture_output=True, text=True
         )
@@ -267,10 +252,10 @@ def test_the_page_for_two_machines_works_as_written(tmp_path: Path) -> None:
     beta.mkdir()
     for name in ("ca.pem", "machines.pem", "machines.key"):
         shutil.copy(alpha / name, beta)
-    started: list[subprocess.Popen[str]] = []
+    started = []
     try:
         for folder, block in zip((alpha, alpha, beta), daemons, strict=True):
-            how: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+            how = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
             words = shlex.split(block.replace("\\\n", " "))
             started.append(
                 subprocess.Popen(words, cwd=folder, env=environment, text=True, start_new_session=True, **how)
@@ -288,7 +273,7 @@ def test_the_page_for_two_machines_works_as_written(tmp_path: Path) -> None:
     assert not left_running(tmp_path)
 
 
-def until_listening(port: int, server: subprocess.Popen[str]) -> None:
+def until_listening(port, server):
     while server.poll() is None:
         with contextlib.suppress(OSError):
             socket.create_connection(("127.0.0.1", port), 1).close()

@@ -10,10 +10,8 @@ import shlex
 import shutil
 import sys
 import tomllib
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -42,11 +40,11 @@ class Printed:
     command: str
     block: int = 0
 
-    def __str__(self) -> str:
+    def __str__(self):
         return f"{self.page}:{self.line}: {self.command}"
 
     @property
-    def typed(self) -> list[str]:
+    def typed(self):
         """Its words, without a comment and without the program that reads what it prints."""
         try:
             words = shlex.split(self.command, comments=True)
@@ -55,20 +53,20 @@ class Printed:
         return [word.strip("[]") for word in itertools.takewhile(lambda word: word != "|", words)]
 
     @property
-    def rule(self) -> dict[str, Any]:
+    def rule(self):
         place, words = "block" if self.block else "sentence", " ".join(self.typed)
         for rule in TABLE["rule"]:
             if rule.get("in", place) == place and re.fullmatch(rule["command"], words):
                 return dict(rule)
         pytest.fail(f"{self}: no rule of docs.toml is about it")
 
-    def lines(self) -> list[list[str]]:
+    def lines(self):
         """What a reader types: one line for each alternative, with a word for each in capitals."""
         chosen = itertools.product(*(word.split("|") for word in self.typed[1:]))
         return [[TABLE["words"].get(word, word) for word in line] for line in chosen]
 
 
-def printed(page: str, text: str) -> list[Printed]:
+def printed(page, text):
     """The commands of a page: lines of its blocks, fenced or indented, and code within its sentences."""
     found, prose, fence, block = [], "", "", 0
     for number, line in enumerate(text.splitlines(), 1):
@@ -90,7 +88,7 @@ def printed(page: str, text: str) -> list[Printed]:
     return found
 
 
-def of_page(path: Path) -> list[Printed]:
+def of_page(path):
     return printed(path.relative_to(ROOT).as_posix(), path.read_text("utf-8"))
 
 
@@ -100,7 +98,7 @@ MADE = {name for one in EVERY if one.typed[1:3] == ["author", "new"] for name in
 MADE |= {name for one in EVERY if one.typed[1:3] == ["author", "pictures"] for name in one.typed[3:4]}
 
 
-def refused(one: Printed) -> str:
+def refused(one):
     """Why the command line does not take a command; empty if it does."""
     try:
         for line in one.lines():
@@ -111,7 +109,7 @@ def refused(one: Printed) -> str:
     return ""
 
 
-def parse(line: list[str], *, in_sentence: bool) -> None:
+def parse(line, *, in_sentence):
     """Give a line to the program's own parser, down to the command that it would run.
 
     A sentence may leave out what a command needs, but name nothing that does not exist.
@@ -138,19 +136,19 @@ def parse(line: list[str], *, in_sentence: bool) -> None:
 
 
 @pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def elsewhere(tmp_path, monkeypatch):
     """Where there is no gradebook whose students would be offered."""
     monkeypatch.chdir(tmp_path)
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
-def test_the_command_line_takes_every_command_of_a_page(path: Path) -> None:
+def test_the_command_line_takes_every_command_of_a_page(path):
     faults = [f"{one}\n    {why}" for one in of_page(path) if (why := refused(one))]
     if faults:
         pytest.fail("\n".join(faults))
 
 
-def test_every_rule_and_every_word_of_the_table_is_about_a_command() -> None:
+def test_every_rule_and_every_word_of_the_table_is_about_a_command():
     rules = [one.rule for one in EVERY]
     assert [rule for rule in TABLE["rule"] if rule not in rules] == []
     assert all(("run" in rule) != ("parsed" in rule) for rule in rules)
@@ -158,7 +156,7 @@ def test_every_rule_and_every_word_of_the_table_is_about_a_command() -> None:
     assert {word for word in told if re.fullmatch(r"[A-Z]+|\.+", word)} == TABLE["words"].keys()
 
 
-def test_blocks_and_sentences_are_read_and_comments_and_output_are_not() -> None:
+def test_blocks_and_sentences_are_read_and_comments_and_output_are_not():
     page = (
         "Type `course\ncheck` or `` `x` ``.\n\n```sh\ncourse demo  # `course no`\nof course not\n```\n\n"
         "    course go\n\n````markdown\n```console\n$ course a | b\n```\n````\n`course quiz take`"
@@ -187,7 +185,7 @@ def test_a_wrong_command_in_a_copy_of_a_page_is_seen(wrong: str, why: str) -> No
 
 
 @pytest.fixture(scope="session")
-def workspace(installed: tuple[list[str], dict[str, str]], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def workspace(installed, tmp_path_factory):
     """A student's: an attempt at the integrators that failed, and then the right file."""
     folder = tmp_path_factory.mktemp("docs") / "workspace"
     way = Way(installed[0], folder.parent, {**_environment(folder.parent), **installed[1]})
@@ -199,7 +197,7 @@ def workspace(installed: tuple[list[str], dict[str, str]], tmp_path_factory: pyt
 
 
 @pytest.fixture(scope="session")
-def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def graded(tmp_path_factory):
     """An instructor's class: the right file under a name of its own, the right file, and the stub."""
     folder = tmp_path_factory.mktemp("docs") / "graded"
     for student, part, name in (
@@ -225,12 +223,10 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def typing(
-    student: Way, instructor: Way, tmp_path: Path, request: pytest.FixtureRequest
-) -> Callable[..., None]:
+def typing(student, instructor, tmp_path, request):
     """Types a line where a reader of it is: in a copy of the place, which stays until the test ends."""
 
-    def type_(line: list[str], code: int) -> None:
+    def type_(line, code):
         whole = " ".join(["course", *line, ""])
         place = next(place for start, place in TABLE["places"].items() if whole.startswith(start))
         there = tmp_path / place
@@ -259,7 +255,7 @@ STORIES = [story for story in STORIES if story]
 
 
 @pytest.mark.parametrize("story", in_turn(STORIES, 3), ids=lambda story: f"{story[0].page}:{story[0].line}")
-def test_what_a_page_prints_does_what_it_says(story: list[Printed], typing: Callable[..., None]) -> None:
+def test_what_a_page_prints_does_what_it_says(story, typing):
     for one in story:
         try:
             if "first" in one.rule:

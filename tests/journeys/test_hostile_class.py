@@ -64,14 +64,14 @@ class Watched:
     memory: list[int] = field(default_factory=list)
     temporary: list[int] = field(default_factory=list)
 
-    def quarters(self) -> tuple[float, float]:
+    def quarters(self):
         """Bytes of memory in the second quarter of the run, and in the last."""
         quarter = max(1, len(self.memory) // 4)
         return statistics.median(self.memory[quarter : 2 * quarter]), statistics.median(
             self.memory[-quarter:]
         )
 
-    def scores(self) -> dict[str, Any]:
+    def scores(self):
         """What each honest student got, check by check."""
         return {
             name: (
@@ -84,12 +84,12 @@ class Watched:
         }
 
 
-def hostile_files() -> list[Path]:
+def hostile_files():
     """Every attack that is kept, in one order."""
     return [path for path in sorted(ATTACKS.glob("*.py")) if not path.name.startswith("wrong_")]
 
 
-def make_class(folder: Path, size: int, *, hostile: bool) -> None:
+def make_class(folder, size, *, hostile):
     """Every fifth student is hostile, or left out; the corpus is gone through evenly."""
     attacks = hostile_files()
     most = max(len(attacks), size // 5)
@@ -106,7 +106,7 @@ def make_class(folder: Path, size: int, *, hostile: bool) -> None:
             (place / MODULE).write_bytes(source + b"\n# %d\n" % number)
 
 
-def resident(pid: int) -> int:
+def resident(pid):
     """Bytes that a process and the trusted ones below it hold; workers have a limit of their own."""
     total = 0
     for child in (pid, *(child for child, (_, line) in below(pid).items() if "course_worker" not in line)):
@@ -115,7 +115,7 @@ def resident(pid: int) -> int:
     return total
 
 
-def grade(folder: Path, out: Path, *options: str) -> Watched:
+def grade(folder, out, *options):
     """One run, looked at every half second."""
     scratch = out.parent / f"scratch-{out.name}"
     words = ("--out", out, "--timeout", 2, "--seed", 11, "--quiet", *options)
@@ -135,7 +135,7 @@ def grade(folder: Path, out: Path, *options: str) -> Watched:
     return Watched(run.returncode, results, time.monotonic() - start, memory, temporary)
 
 
-def tell(name: str, run: Watched) -> None:
+def tell(name, run):
     """One line of what was measured."""
     early, late = run.quarters()
     print(
@@ -145,7 +145,7 @@ def tell(name: str, run: Watched) -> None:
     )
 
 
-def compare(tmp_path: Path, size: int, *options: str) -> None:
+def compare(tmp_path, size, *options):
     """Grade the honest alone and then among the hostile, and hold the one against the other."""
     make_class(tmp_path / "honest", size, hostile=False)
     make_class(tmp_path / "class", size, hostile=True)
@@ -171,12 +171,12 @@ def compare(tmp_path: Path, size: int, *options: str) -> None:
     assert max(among.temporary) <= TEMPORARY
 
 
-def test_the_honest_get_what_they_would_have_got_without_the_hostile(tmp_path: Path) -> None:
+def test_the_honest_get_what_they_would_have_got_without_the_hostile(tmp_path):
     require_level("L3")
     compare(tmp_path, SIZE, "-j", "2")
 
 
 @NEEDS_CLUSTER
-def test_so_they_do_on_a_cluster_of_two(tmp_path: Path) -> None:
+def test_so_they_do_on_a_cluster_of_two(tmp_path):
     require_level("L3")
     compare(tmp_path, SIZE, "--local-cluster", "2")

@@ -11,7 +11,6 @@ import sys
 import zipfile
 from importlib import metadata
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -19,7 +18,6 @@ from packaging.requirements import Requirement
 
 from course.authoring.exercises.grading import mistakes_of
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise
 from course.notebooks.build import exercise_cells
 from course.notebooks.cells import document
 from tests.journeys.conftest import ALL, ROOT, Way, in_turn, model
@@ -47,26 +45,26 @@ sys.meta_path.insert(0, Absent())
 """
 
 
-def wrong(exercise: Exercise) -> str:
+def wrong(exercise):
     """The model with one of its known mistakes."""
     first = mistakes_of(CATALOG, exercise).wrong[0]
     return first.composed(model(exercise), SOLUTIONS / exercise.id / exercise.module)
 
 
-def broken(exercise: Exercise) -> str:
+def broken(exercise):
     """One function that is no Python, and a line that raises."""
     name = exercise.task[0].id
     return model(exercise).replace(f"def {name}(", f"def {name}((", 1) + "\nprint(nothing_of_this_name)\n"
 
 
-def notebook(exercise: Exercise) -> bytes:
+def notebook(exercise):
     """The exercise's notebook, with the solution in its cells."""
     cells = exercise_cells(exercise, model(exercise))
     return document(cells, kind="exercise", id=exercise.id, version=CATALOG.version)
 
 
 #: Each student: what becomes of each exercise, and the file that is handed in for it.
-KINDS: dict[str, tuple[str, Any]] = {
+KINDS = {
     "ada": (RIGHT, lambda one: (one.module, model(one))),
     "bea": (RIGHT, lambda one: (one.module.replace(".py", ".ipynb"), notebook(one))),
     "cyd": (LESS, lambda one: (one.module, wrong(one))),
@@ -82,7 +80,7 @@ KINDS: dict[str, tuple[str, Any]] = {
 OFTEN = ("bea", "fay")
 
 
-def hands_in_for(student: str) -> list[Exercise]:
+def hands_in_for(student):
     """What a student hands in: everything; in an ordinary run of most the first exercise and one in turn."""
     if ALL or student == "ada":
         return EXERCISES
@@ -91,13 +89,13 @@ def hands_in_for(student: str) -> list[Exercise]:
     return [EXERCISES[0], others[(day + list(KINDS).index(student)) % len(others)]]
 
 
-def copied_by_lou() -> list[Exercise]:
+def copied_by_lou():
     """Of what ada hands in."""
     return EXERCISES if ALL else EXERCISES[:1]
 
 
 @pytest.fixture(scope="module")
-def zipped(installed: tuple[list[str], dict[str, str]], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def zipped(installed, tmp_path_factory):
     """What a student's own `submit` makes of everything done right, the quiz included."""
     home = tmp_path_factory.mktemp("kim")
     command, says = installed
@@ -119,7 +117,7 @@ def zipped(installed: tuple[list[str], dict[str, str]], tmp_path_factory: pytest
 
 
 @pytest.fixture(scope="module")
-def handed_in(zipped: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def handed_in(zipped, tmp_path_factory):
     """A class of twelve, and its roster beside it."""
     folder = tmp_path_factory.mktemp("class")
     for student, (_, hands_in) in KINDS.items():
@@ -142,7 +140,7 @@ def handed_in(zipped: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def run(instructor: Way, handed_in: Path, out: Path, *how: object) -> dict[tuple[str, str], dict[str, Any]]:
+def run(instructor, handed_in, out, *how):
     """The lines of results, by student and exercise."""
     instructor(
         "grade", "run", handed_in / "class", "--out", out, "--seed", "7", "--roster",
@@ -152,11 +150,11 @@ def run(instructor: Way, handed_in: Path, out: Path, *how: object) -> dict[tuple
     return {(line["student"], line["exercise"]): line for line in lines}
 
 
-def scores(results: dict[tuple[str, str], dict[str, Any]]) -> dict[tuple[str, str], tuple[str, float | None]]:
+def scores(results):
     return {about: (line["state"], line["score"]) for about, line in results.items()}
 
 
-def test_a_term(instructor: Way, handed_in: Path, tmp_path: Path) -> None:
+def test_a_term(instructor, handed_in, tmp_path):
     """Every command of `grade` on one class, in the order in which a term needs them."""
     out = tmp_path / "out"
     results = run(instructor, handed_in, out, "-j", "1")
@@ -203,7 +201,7 @@ def test_a_term(instructor: Way, handed_in: Path, tmp_path: Path) -> None:
     salvaged(instructor, out, tmp_path)
 
 
-def as_each_deserves(results: dict[tuple[str, str], dict[str, Any]]) -> None:
+def as_each_deserves(results):
     assert EXERCISES
     for exercise in EXERCISES:
         for student, (kind, _) in KINDS.items():
@@ -233,7 +231,7 @@ def as_each_deserves(results: dict[tuple[str, str], dict[str, Any]]) -> None:
     assert {line["isolation"] for line in results.values() if line["isolation"]} == {"L3"}
 
 
-def exported(instructor: Way, handed_in: Path, out: Path) -> None:
+def exported(instructor, handed_in, out):
     """Every format, read back."""
     ids = [
         word for n, exercise in enumerate(EXERCISES) for word in ("--assignment", f"{exercise.id}={n + 1}")
@@ -270,7 +268,7 @@ def exported(instructor: Way, handed_in: Path, out: Path) -> None:
     assert "Seen in the oral: fine" in said
 
 
-def salvaged(instructor: Way, out: Path, tmp_path: Path) -> None:
+def salvaged(instructor, out, tmp_path):
     """A page of the gradebook is overwritten; nothing of it is lost, for there are backups."""
     with (out / "gradebook.sqlite").open("r+b") as file:
         file.seek(8192)
@@ -281,9 +279,7 @@ def salvaged(instructor: Way, out: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("exercise", in_turn(EXERCISES), ids=lambda one: one.id)
-def test_the_container_of_an_exercise_scores_as_the_run(
-    instructor: Way, tmp_path: Path, exercise: Exercise
-) -> None:
+def test_the_container_of_an_exercise_scores_as_the_run(instructor, tmp_path, exercise):
     """With the files of the zip and the packages of ``setup.sh``, and nothing else of this machine."""
     instructor(
         "grade", "export", "--format", "gradescope-autograder", "--exercise", exercise.id, "--seed", "7",
@@ -318,7 +314,7 @@ def test_the_container_of_an_exercise_scores_as_the_run(
         assert (body["score"] == exercise.max_points) == (kind == RIGHT), (student, lost, done.stdout)
 
 
-def absent() -> set[str]:
+def absent():
     """Top-level modules of what is installed here and not by ``setup.sh``."""
     wanted, present = list(INSTALLED), set()
     while wanted:

@@ -4,12 +4,11 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
 from course.catalog.load import Catalog
-from tests.journeys.conftest import Way, in_turn, model
+from tests.journeys.conftest import in_turn, model
 from tests.journeys.processes import left_running
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux")
@@ -29,7 +28,7 @@ def {EXERCISE.task[0].id}(*_):
 
 
 @pytest.fixture
-def started(tmp_path: Path) -> tuple[Path, Path]:
+def started(tmp_path):
     """A class, and a roster with one more."""
     for number, name in enumerate(STUDENTS):
         place = tmp_path / "class" / name / EXERCISE.id
@@ -41,7 +40,7 @@ def started(tmp_path: Path) -> tuple[Path, Path]:
     return tmp_path / "class", tmp_path / "roster.csv"
 
 
-def stop(instructor: Way, started: tuple[Path, Path], out: Path, by: signal.Signals, after_s: float) -> int:
+def stop(instructor, started, out, by, after_s):
     """Send the signal after a while; the exit code."""
     folder, roster = started
     words = ("grade", "run", folder, "--out", out, "--roster", roster, "-j", "2", "--plain")
@@ -57,7 +56,7 @@ def stop(instructor: Way, started: tuple[Path, Path], out: Path, by: signal.Sign
     return code
 
 
-def says_nothing_untrue(instructor: Way, out: Path) -> None:
+def says_nothing_untrue(instructor, out):
     """Neither in a file nor on the screen, and a platform is sent nothing."""
     for path in out.rglob("*"):
         if path.suffix in {".csv", ".html", ".jsonl"}:
@@ -82,8 +81,8 @@ def says_nothing_untrue(instructor: Way, out: Path) -> None:
 
 @pytest.mark.parametrize("by", in_turn(SIGNALS))
 def test_a_run_that_is_stopped_by_a_signal_leaves_no_process_and_no_untruth(
-    instructor: Way, started: tuple[Path, Path], tmp_path: Path, by: signal.Signals
-) -> None:
+    instructor, started, tmp_path, by
+):
     """While functions that never end are graded, in the middle of everything."""
     code = stop(instructor, started, tmp_path / "out", by, 4.0)
     assert code in {130, -by}
@@ -93,9 +92,7 @@ def test_a_run_that_is_stopped_by_a_signal_leaves_no_process_and_no_untruth(
 @pytest.mark.soak
 @pytest.mark.parametrize("by", SIGNALS)
 @pytest.mark.parametrize("moment", range(10))
-def test_at_every_moment(
-    instructor: Way, started: tuple[Path, Path], tmp_path: Path, by: signal.Signals, moment: int
-) -> None:
+def test_at_every_moment(instructor, started, tmp_path, by, moment):
     """From before the class is read to where most of it is graded."""
     stop(instructor, started, tmp_path / "out", by, 0.2 + 0.3 * moment)
     says_nothing_untrue(instructor, tmp_path / "out")

@@ -7,10 +7,8 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -43,20 +41,20 @@ RIGHT = """def explicit_euler_step(accel, t, q, v, h):
 
 
 @pytest.fixture(scope="module")
-def notebooks(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def notebooks(tmp_path_factory):
     """A folder with notebooks as a student gets them."""
     folder = tmp_path_factory.mktemp("jupyter") / "notebooks"
     _build(folder, "sandbox")
     return folder
 
 
-def _build(folder: Path, *words: str) -> None:
+def _build(folder, *words):
     command = [sys.executable, "-m", "course", "notebook", "build", "--out", str(folder), *words]
     subprocess.run(command, check=True, env=os.environ | {"PYTHONPATH": str(ROOT)}, cwd=folder.parent)
 
 
 @pytest.fixture(scope="module")
-def lab(notebooks: Path) -> Iterator[tuple[str, str]]:
+def lab(notebooks):
     """The address and the token of JupyterLab on these notebooks, with settings and state of its own."""
     home = notebooks.parent
     settings = home / "settings" / "@jupyterlab"
@@ -86,7 +84,7 @@ def lab(notebooks: Path) -> Iterator[tuple[str, str]]:
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
+def browser():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
@@ -96,12 +94,12 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture
-def open_notebook(browser: Any, lab: tuple[str, str], tmp_path: Path) -> Iterator[Any]:
+def open_notebook(browser, lab, tmp_path):
     """Opens a notebook in a page of its own; pictures of the pages go to COURSE_SCREENSHOTS if it is set."""
     pages = []
     address, token = lab
 
-    def open_(path: str) -> Any:
+    def open_(path):
         page = browser.new_page(viewport={"width": 1300, "height": 1000})
         page.set_default_timeout(PATIENCE)
         pages.append(page)
@@ -118,7 +116,7 @@ def open_notebook(browser: Any, lab: tuple[str, str], tmp_path: Path) -> Iterato
         page.close()
 
 
-def _wait_for_kernel(page: Any, address: str, path: str) -> None:
+def _wait_for_kernel(page, address, path):
     """Until the page has an idle kernel, by the word of the server: the page calls it idle too early."""
     # Where kernels are slow to be listed, JupyterLab asks which one is wanted.
     asked = page.locator(".jp-Dialog", has_text="Select Kernel")
@@ -136,7 +134,7 @@ def _wait_for_kernel(page: Any, address: str, path: str) -> None:
     pytest.fail(f"{path} has no kernel")
 
 
-def shot(page: Any, name: str, selector: str) -> None:
+def shot(page, name, selector):
     """Keep a picture of a part of the page for whoever wants to look."""
     folder = os.environ.get("COURSE_SCREENSHOTS")
     if folder:
@@ -145,7 +143,7 @@ def shot(page: Any, name: str, selector: str) -> None:
 
 
 @pytest.mark.soak
-def test_a_lesson_opens_with_figures_diagrams_and_mathematics(open_notebook: Any, notebooks: Path) -> None:
+def test_a_lesson_opens_with_figures_diagrams_and_mathematics(open_notebook, notebooks):
     _build(notebooks, "numerical-integration", "--executed")
     page = open_notebook("lessons/numerical-integration.ipynb")
     page.wait_for_selector(".jp-MarkdownOutput mjx-container", state="attached")
@@ -173,7 +171,7 @@ def test_a_lesson_opens_with_figures_diagrams_and_mathematics(open_notebook: Any
 
 
 @pytest.mark.soak
-def test_a_prediction_opens_its_answer(open_notebook: Any, notebooks: Path) -> None:
+def test_a_prediction_opens_its_answer(open_notebook, notebooks):
     _build(notebooks, "accuracy")
     page = open_notebook("lessons/accuracy.ipynb")
     _run_all(page)
@@ -190,7 +188,7 @@ def test_a_prediction_opens_its_answer(open_notebook: Any, notebooks: Path) -> N
 
 
 @pytest.mark.soak
-def test_the_quiz_is_handed_in_and_marked(open_notebook: Any, notebooks: Path) -> None:
+def test_the_quiz_is_handed_in_and_marked(open_notebook, notebooks):
     _build(notebooks, "quiz")
     page = open_notebook("quiz.ipynb")
     _run(page, "take()")
@@ -206,7 +204,7 @@ def test_the_quiz_is_handed_in_and_marked(open_notebook: Any, notebooks: Path) -
 
 
 @pytest.mark.soak
-def test_an_exercise_is_edited_until_its_check_passes(open_notebook: Any, notebooks: Path) -> None:
+def test_an_exercise_is_edited_until_its_check_passes(open_notebook, notebooks):
     _build(notebooks, "integrators")
     page = open_notebook("exercises/integrators.ipynb")
     _run_all(page)
@@ -221,22 +219,22 @@ def test_an_exercise_is_edited_until_its_check_passes(open_notebook: Any, notebo
     shot(page, "exercise-pass", ".course-checks")
 
 
-def _run_all(page: Any) -> None:
+def _run_all(page):
     page.keyboard.press("Escape")
     page.click("text=Run >> visible=true")
     page.click("text=Run All Cells >> visible=true")
     page.locator(".jp-CodeCell .jp-InputPrompt", has_text=_RUN).first.wait_for()
 
 
-def _check_cell(page: Any) -> Any:
+def _check_cell(page):
     return page.locator(".jp-CodeCell", has_text="%course_check integrators explicit_euler_step")
 
 
-def _check(page: Any) -> str:
+def _check(page):
     return str(_check_cell(page).locator(".jp-OutputArea").inner_text())
 
 
-def _write(page: Any, text: str) -> None:
+def _write(page, text):
     """Replace the function and run its cell and the check below it."""
     cell = page.locator(".jp-CodeCell", has_text="def explicit_euler_step").first
     cell.locator(".cm-content").click()
@@ -246,7 +244,7 @@ def _write(page: Any, text: str) -> None:
     page.keyboard.press("Shift+Enter")
 
 
-def _wait_for_check(page: Any, text: str, *, absent: bool = False) -> None:
+def _wait_for_check(page, text, *, absent=False):
     """Until the check's output shows a text, or, once it ran again, something else."""
     if absent:
         _check_cell(page).locator(".jp-OutputArea", has_text="EULER").wait_for()
@@ -254,7 +252,7 @@ def _wait_for_check(page: Any, text: str, *, absent: bool = False) -> None:
         _check_cell(page).locator(".jp-OutputArea", has_text=text).first.wait_for()
 
 
-def test_the_sandbox_moves_and_a_throw_changes_a_path(open_notebook: Any) -> None:
+def test_the_sandbox_moves_and_a_throw_changes_a_path(open_notebook):
     page = _play(open_notebook, "head-on")
     widget = page.locator(".sandbox")
     canvas = widget.locator("canvas.world")
@@ -290,7 +288,7 @@ def test_the_sandbox_moves_and_a_throw_changes_a_path(open_notebook: Any) -> Non
 
 
 @pytest.mark.soak
-def test_a_narrow_cell_puts_the_panel_below_the_world(open_notebook: Any) -> None:
+def test_a_narrow_cell_puts_the_panel_below_the_world(open_notebook):
     page = _play(open_notebook, "newtons-cradle")
     panel, stage = page.locator(".sandbox .panel"), page.locator(".sandbox .stage")
     page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== ''")
@@ -312,7 +310,7 @@ def test_a_narrow_cell_puts_the_panel_below_the_world(open_notebook: Any) -> Non
 
 
 @pytest.mark.soak
-def test_keys_for_the_world_are_not_shortcuts_of_jupyter(open_notebook: Any) -> None:
+def test_keys_for_the_world_are_not_shortcuts_of_jupyter(open_notebook):
     page = _play(open_notebook, "newtons-cradle")
     canvas = page.locator(".sandbox canvas.world")
     canvas.wait_for()
@@ -325,7 +323,7 @@ def test_keys_for_the_world_are_not_shortcuts_of_jupyter(open_notebook: Any) -> 
     assert page.locator(".jp-Cell").count() == cells
 
 
-def _play(open_notebook: Any, scene: str) -> Any:
+def _play(open_notebook, scene):
     """A page with the sandbox's notebook, in which a scene waits in a cell."""
     pytest.importorskip("anywidget")
     page = open_notebook("sandbox.ipynb")
@@ -334,7 +332,7 @@ def _play(open_notebook: Any, scene: str) -> Any:
     return page
 
 
-def _run(page: Any, text: str) -> None:
+def _run(page, text):
     """Run the cell with this text."""
     cell = page.locator(".jp-CodeCell", has_text=text).first
     cell.locator(".cm-content").click()
@@ -342,7 +340,7 @@ def _run(page: Any, text: str) -> None:
     cell.locator(".jp-InputPrompt", has_text=_RUN).wait_for()
 
 
-def _start(scene_id: str, name: str) -> tuple[float, float]:
+def _start(scene_id, name):
     """Where a body is at the start."""
     world = World(choose(scene_id).scene)
     index = [part.name for part in world.parts].index(name)
@@ -350,7 +348,7 @@ def _start(scene_id: str, name: str) -> tuple[float, float]:
     return float(shown.x[index]), float(shown.y[index])
 
 
-def _pixel(canvas: Any, scene_id: str, x: float, y: float) -> tuple[float, float]:
+def _pixel(canvas, scene_id, x, y):
     """Where a place of a scene is on the page."""
     box = canvas.bounding_box()
     left, bottom, right, top = choose(scene_id).scene.view

@@ -8,8 +8,6 @@ import os
 import select
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 
 import pytest
 
@@ -30,13 +28,7 @@ ENDS = (PREDICT, "q stops: ", "Enter goes on: ")
 class Lines:
     """A program on a terminal that shows what arrives and nothing else."""
 
-    def __init__(
-        self,
-        folder: Path,
-        *words: str,
-        command: Sequence[str] = (sys.executable, "-m", "course"),
-        environment: Mapping[str, str] = os.environ,
-    ) -> None:
+    def __init__(self, folder, *words, command=(sys.executable, "-m", "course"), environment=os.environ):
         self.said = b""
         self._from = 0
         self.pid, self._terminal = pty.fork()
@@ -45,7 +37,7 @@ class Lines:
             terminal = {"TERM": "xterm-256color", "LC_ALL": "C.UTF-8", "COLORTERM": "truecolor"}
             os.execve(command[0], [*command, *words], {**environment, "LANG": "C.UTF-8", **terminal})
 
-    def wait(self, *ends: str) -> str:
+    def wait(self, *ends):
         """What was said since the last wait, once it ends with one of these or the program has ended."""
         until = time.monotonic() + PATIENCE
         while time.monotonic() < until:
@@ -62,43 +54,43 @@ class Lines:
         self._from = len(self.said)
         return new
 
-    def type(self, words: str, *ends: str) -> str:
+    def type(self, words, *ends):
         os.write(self._terminal, f"{words}\n".encode())
         return self.wait(*(ends or ENDS)).partition("\n")[2]  # the terminal shows what was typed
 
-    def press(self, key: str, *ends: str) -> str:
+    def press(self, key, *ends):
         """A key without Enter, and what it says; all of it if the program ends."""
         os.write(self._terminal, key.encode())
         return self.wait(*ends)
 
-    def interrupt(self) -> str:
+    def interrupt(self):
         os.write(self._terminal, b"\x03")
         return self.wait(*ENDS)
 
-    def close(self) -> None:
+    def close(self):
         os.close(self._terminal)
         with contextlib.suppress(ChildProcessError):
             os.waitpid(self.pid, 0)
 
 
 @pytest.fixture
-def workspace(tmp_path: Path) -> Workspace:
+def workspace(tmp_path):
     return Workspace.create(tmp_path / "mine", CATALOG.course_id, CATALOG.version)
 
 
 @pytest.fixture
-def lines(workspace: Workspace) -> Iterator[Lines]:
+def lines(workspace):
     with contextlib.closing(Lines(workspace.root, "lesson", LESSON, "--plain", "--page")) as made:
         yield made
 
 
-def once(said: str) -> str:
+def once(said):
     """The same, which says no sentence twice."""
     assert repeated(said) == []
     return said
 
 
-def cell(lines: Lines, workspace: Workspace) -> None:
+def cell(lines, workspace):
     """Run a cell, change it, run it, hang it, stop it, and take the lesson's own again."""
     assert "and printed the same." in lines.type("r")
     lines.type("e")
@@ -114,7 +106,7 @@ def cell(lines: Lines, workspace: Workspace) -> None:
     assert "and printed the same." in lines.type("r")
 
 
-def task(lines: Lines, workspace: Workspace, name: str) -> None:
+def task(lines, workspace, name):
     """Start it, fail, ask for a hint, fail otherwise, ask again, mend it."""
     exercise = CATALOG.exercise(name)
     path = workspace.path(exercise.place, exercise.module)
@@ -133,7 +125,7 @@ def task(lines: Lines, workspace: Workspace, name: str) -> None:
     assert passed == [False, False, True]
 
 
-def test_a_lesson_is_read_and_done_by_lines(lines: Lines, workspace: Workspace) -> None:
+def test_a_lesson_is_read_and_done_by_lines(lines, workspace):
     said, left, done = lines.wait(*ENDS), [one.id for one in CATALOG.tasks(LESSON)], []
     while "Next: course" not in said.splitlines()[-1]:
         once(said)
@@ -158,7 +150,7 @@ def test_a_lesson_is_read_and_done_by_lines(lines: Lines, workspace: Workspace) 
     assert [event.subject for event in workspace.store.events("lesson")] == [LESSON]
 
 
-def test_ctrl_c_keeps_the_place(lines: Lines, workspace: Workspace) -> None:
+def test_ctrl_c_keeps_the_place(lines, workspace):
     lines.wait(*ENDS)
     lines.type("")
     page = lines.type("")

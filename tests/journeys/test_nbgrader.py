@@ -27,7 +27,7 @@ pytestmark = [
 ]
 
 
-def nbgrader(site: Path, *words: str) -> subprocess.CompletedProcess[str]:
+def nbgrader(site, *words):
     # It calls the programs that came with it by name.
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = os.environ | {"PYTHONPATH": str(ROOT), "HOME": str(site), "PATH": path}
@@ -35,7 +35,7 @@ def nbgrader(site: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=site, env=environment, text=True, capture_output=True, check=False)
 
 
-def filled(release: Path, texts: dict[str, str]) -> bytes:
+def filled(release, texts):
     """A student's notebook: the release with functions written into its cells."""
     notebook = json.loads(release.read_text("utf-8"))
     for cell in notebook["cells"]:
@@ -45,7 +45,7 @@ def filled(release: Path, texts: dict[str, str]) -> bytes:
     return json.dumps(notebook).encode()
 
 
-def test_nbgrader_makes_validates_and_grades_the_assignment(tmp_path: Path) -> None:
+def test_nbgrader_makes_validates_and_grades_the_assignment(tmp_path):
     catalog = Catalog()
     exercise = catalog.exercise("integrators")
     assert catalog.content.solutions is not None
@@ -96,7 +96,7 @@ def test_nbgrader_makes_validates_and_grades_the_assignment(tmp_path: Path) -> N
             assert scores[student] == pytest.approx(ours.score), student
 
 
-def recorded(site: Path) -> dict[str, float]:
+def recorded(site):
     """Scores by student, as nbgrader keeps them."""
     from nbgrader.api import Gradebook
 

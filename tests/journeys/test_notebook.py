@@ -8,17 +8,13 @@ import contextlib
 import json
 import os
 import time
-from collections.abc import Callable, Iterator
 from importlib.util import find_spec
-from pathlib import Path
-from typing import Any
 
 import pytest
 
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise
 from course.notebooks.build import pieces
-from tests.journeys.conftest import Way, in_turn, model
+from tests.journeys.conftest import in_turn, model
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()
@@ -27,7 +23,7 @@ NO_KERNEL = [name for name in ("jupyter_client", "ipykernel") if find_spec(name)
 with_kernel = pytest.mark.skipif(bool(NO_KERNEL), reason=f"the extra notebook is not installed: {NO_KERNEL}")
 
 
-def fill(path: Path, exercise: Exercise) -> None:
+def fill(path, exercise):
     """Write the solution into the notebook as a student does: each function into its cell, the rest above."""
     notebook = json.loads(path.read_text("utf-8"))
     parts = pieces(model(exercise), {task.id for task in exercise.task})[1]
@@ -42,7 +38,7 @@ def fill(path: Path, exercise: Exercise) -> None:
     path.write_text(json.dumps(notebook), "utf-8")
 
 
-def submitted(student: Way, workspace: Path) -> dict[str, tuple[float, float]]:
+def submitted(student, workspace):
     """What `submit` says of each file that goes in."""
     reply = json.loads(student("submit", "--json", cwd=workspace).stdout)
     return {
@@ -50,7 +46,7 @@ def submitted(student: Way, workspace: Path) -> dict[str, tuple[float, float]]:
     }
 
 
-def graded(instructor: Way, workspace: Path) -> dict[str, dict[str, Any]]:
+def graded(instructor, workspace):
     """The results of a grading run over what `submit` wrote."""
     place = workspace.parent / "class" / "kim"
     place.mkdir(parents=True, exist_ok=True)
@@ -61,15 +57,13 @@ def graded(instructor: Way, workspace: Path) -> dict[str, dict[str, Any]]:
     return {line["exercise"]: line for line in lines}
 
 
-def public(line: dict[str, Any]) -> tuple[float, float]:
+def public(line):
     """Points and maximum of the public part of a grading."""
     checks = [check for check in line["checks"] if check["visibility"] == "public"]
     return sum(check["points"] for check in checks), sum(check["max_points"] for check in checks)
 
 
-def test_every_exercise_in_its_notebook_is_graded_as_the_file_is(
-    student: Way, instructor: Way, workspace: Path
-) -> None:
+def test_every_exercise_in_its_notebook_is_graded_as_the_file_is(student, instructor, workspace):
     tried = in_turn(EXERCISES, 2)
     student("notebook", "build", *(exercise.id for exercise in tried), cwd=workspace)
     for exercise in tried:
@@ -93,7 +87,7 @@ def test_every_exercise_in_its_notebook_is_graded_as_the_file_is(
 class Kernel:
     """A kernel of a notebook, spoken to as JupyterLab does: each cell comes with its id."""
 
-    def __init__(self, path: Path, environment: dict[str, str]) -> None:
+    def __init__(self, path, environment):
         from jupyter_client.manager import KernelManager
 
         self.path = path
@@ -105,7 +99,7 @@ class Kernel:
         self._client.start_channels()
         self._client.wait_for_ready(timeout=120)
 
-    def run(self, text: str, cell: str = "") -> str:
+    def run(self, text, cell=""):
         """Run a cell; what it printed and showed."""
         client = self._client
         content = {
@@ -114,7 +108,7 @@ class Kernel:
         }  # fmt: skip
         message = client.session.msg("execute_request", content, metadata={"cellId": cell} if cell else {})
         client.shell_channel.send(message)
-        said: list[str] = []
+        said = []
         while True:
             answer = client.get_iopub_msg(timeout=120)
             if answer["parent_header"].get("msg_id") != message["header"]["msg_id"]:
@@ -129,11 +123,10 @@ class Kernel:
             elif answer["msg_type"] == "status" and told["execution_state"] == "idle":
                 return "\n".join(said)
 
-    def cells(self) -> list[dict[str, Any]]:
-        found: list[dict[str, Any]] = json.loads(self.path.read_text("utf-8"))["cells"]
-        return found
+    def cells(self):
+        return json.loads(self.path.read_text("utf-8"))["cells"]
 
-    def run_all(self) -> str:
+    def run_all(self):
         """Run every code cell of the file; what the last one showed."""
         said = ""
         for cell in self.cells():
@@ -141,13 +134,13 @@ class Kernel:
                 said = self.run("".join(cell["source"]), cell["id"])
         return said
 
-    def close(self) -> None:
+    def close(self):
         self._client.stop_channels()
         self._manager.shutdown_kernel(now=True)
 
 
 @pytest.fixture
-def kernel(student: Way, workspace: Path) -> Iterator[Kernel]:
+def kernel(student, workspace):
     """The kernel of the solved notebook of ``integrators``."""
     student("notebook", "build", "integrators", cwd=workspace)
     path = workspace / "integrators" / "integrators.ipynb"
@@ -157,7 +150,7 @@ def kernel(student: Way, workspace: Path) -> Iterator[Kernel]:
         yield made
 
 
-def edit(path: Path, change: Callable[[list[dict[str, Any]]], None]) -> None:
+def edit(path, change):
     """Change the file's cells and save it."""
     notebook = json.loads(path.read_text("utf-8"))
     change(notebook["cells"])
@@ -167,7 +160,7 @@ def edit(path: Path, change: Callable[[list[dict[str, Any]]], None]) -> None:
     time.sleep(0.1)
 
 
-def of_task(cells: list[dict[str, Any]], task: str) -> dict[str, Any]:
+def of_task(cells, task):
     return next(
         cell
         for cell in cells
@@ -176,7 +169,7 @@ def of_task(cells: list[dict[str, Any]], task: str) -> dict[str, Any]:
     )
 
 
-def code(text: str, cell: str) -> dict[str, Any]:
+def code(text, cell):
     return {
         "cell_type": "code",
         "id": cell,
@@ -192,14 +185,12 @@ CHECK = "%course_check integrators"
 
 
 @with_kernel
-def test_what_the_kernel_has_run_besides_changes_nothing(
-    kernel: Kernel, student: Way, instructor: Way, workspace: Path
-) -> None:
+def test_what_the_kernel_has_run_besides_changes_nothing(kernel, student, instructor, workspace):
     """A call under a function, a helper that was deleted, an old copy: each is judged as it is graded."""
     kernel.run_all()
     assert "40 of 40 points" in kernel.run(CHECK)
 
-    def below_integrate(cells: list[dict[str, Any]]) -> None:
+    def below_integrate(cells):
         of_task(cells, "integrate")["source"] += "\nprint(max_stable_step(explicit_euler_step, 1.0))\n"
 
     edit(kernel.path, below_integrate)
@@ -233,7 +224,7 @@ def test_what_the_kernel_has_run_besides_changes_nothing(
 
 
 @with_kernel
-def test_what_is_not_saved_or_not_run_is_said(kernel: Kernel) -> None:
+def test_what_is_not_saved_or_not_run_is_said(kernel):
     kernel.run_all()
     cell = of_task(kernel.cells(), "rk4_step")
     time.sleep(0.05)
@@ -247,5 +238,5 @@ def test_what_is_not_saved_or_not_run_is_said(kernel: Kernel) -> None:
 
 
 @with_kernel
-def test_after_a_restart_the_check_judges_the_file(kernel: Kernel) -> None:
+def test_after_a_restart_the_check_judges_the_file(kernel):
     assert "40 of 40 points" in kernel.run(CHECK)

@@ -2,7 +2,6 @@
 
 import json
 from importlib.util import find_spec
-from typing import Any
 
 import pytest
 
@@ -29,23 +28,22 @@ socket.create_connection = socket.getaddrinfo = _refused
 """
 
 
-def ran(kind: str, name: str, more: str = "") -> list[dict[str, Any]]:
+def ran(kind, name, more=""):
     """The cells of a notebook after a run; ``more`` is one more cell at its end."""
     (one,) = [made for made in generate(CATALOG, [name]) if made.kind == kind]
     notebook = json.loads(one.data)
     for place, text in ((0, OFFLINE), (len(notebook["cells"]) + 1, more)):
         extra = {"cell_type": "code", "id": f"extra-{place}", "metadata": {}, "source": text}
         notebook["cells"].insert(place, extra | {"outputs": [], "execution_count": None})
-    cells: list[dict[str, Any]] = json.loads(executed(json.dumps(notebook).encode(), str(one.path)))["cells"]
-    return cells
+    return json.loads(executed(json.dumps(notebook).encode(), str(one.path)))["cells"]
 
 
-def printed(cell: dict[str, Any]) -> str:
+def printed(cell):
     return "".join("".join(one["text"]) for one in cell["outputs"] if one["output_type"] == "stream")
 
 
 @pytest.mark.parametrize("name", CATALOG.lesson_ids())
-def test_a_lesson_runs_and_its_numbers_are_those_of_its_text(name: str) -> None:
+def test_a_lesson_runs_and_its_numbers_are_those_of_its_text(name):
     blocks = read_blocks(CATALOG.content.lessons / f"{name}.md")
     values = [value for _, value in b.walk_inlines(blocks) if isinstance(value, b.Value)]
     expressions = ", ".join(f"({value.expression})" for value in values)
@@ -71,7 +69,7 @@ def test_a_lesson_runs_and_its_numbers_are_those_of_its_text(name: str) -> None:
     ("kind", "name"),
     [*(("exercise", name) for name in CATALOG.exercise_ids()), ("quiz", "quiz"), ("sandbox", "sandbox")],
 )
-def test_an_exercise_quiz_or_sandbox_runs(kind: str, name: str) -> None:
+def test_an_exercise_quiz_or_sandbox_runs(kind, name):
     cells = ran(kind, name)
     shown = [cell for cell in cells if cell.get("outputs")]
     assert shown

@@ -10,7 +10,6 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -30,12 +29,12 @@ WHEEL_DOWN = 65
 
 
 @pytest.fixture
-def workspace(tmp_path: Path) -> Workspace:
+def workspace(tmp_path):
     return Workspace.create(tmp_path / "mine", CATALOG.course_id, CATALOG.version)
 
 
 @pytest.fixture(params=[(80, 24), (120, 40), (40, 20)], ids=["80x24", "120x40", "40x20"])
-def terminal(request: pytest.FixtureRequest, workspace: Workspace) -> Iterator[Terminal]:
+def terminal(request, workspace):
     with contextlib.closing(Terminal(workspace.root, request.param)) as made:
         yield made
 
@@ -43,13 +42,13 @@ def terminal(request: pytest.FixtureRequest, workspace: Workspace) -> Iterator[T
 class Student:
     """Does what the line of keys at the foot of the screen offers."""
 
-    def __init__(self, terminal: Terminal, workspace: Workspace) -> None:
+    def __init__(self, terminal, workspace):
         self.terminal, self.workspace = terminal, workspace
-        self.done: list[str] = []
+        self.done = []
         self.tasks = [one.id for one in CATALOG.tasks(LESSON)]
         self.left = list(self.tasks)
 
-    def read_to_the_end(self) -> None:
+    def read_to_the_end(self):
         for _ in range(400):
             screen = self.terminal.still()
             keys = screen.rstrip("\n").splitlines()[-1]
@@ -73,11 +72,11 @@ class Student:
                 self.on(screen)
         pytest.fail(f"no end:\n{screen}")
 
-    def on(self, screen: str) -> None:
+    def on(self, screen):
         self.terminal.keys("Space")
         self.terminal.wait_for_other(screen)
 
-    def predict(self) -> None:
+    def predict(self):
         self.terminal.keys("Enter")
         self.terminal.wait("a number with its")
         self.terminal.type("it grows")
@@ -85,7 +84,7 @@ class Student:
         self.terminal.wait_until_gone("a number with its")  # what says "Kept." is soon gone itself
         self.done.append("predicted")
 
-    def run(self) -> None:
+    def run(self):
         if "ran" not in self.done:
             self.terminal.keys("r")
             self.terminal.wait("ran here")
@@ -100,7 +99,7 @@ class Student:
             self.terminal.wait("mine 42")
         self.done.append("ran")
 
-    def do_task(self, name: str) -> None:
+    def do_task(self, name):
         exercise = CATALOG.exercise(name)
         self.terminal.keys("Enter")
         self.terminal.wait("r check")
@@ -126,7 +125,7 @@ class Student:
         self.terminal.wait("Done: every check passes.")
         self.done.append(name)
 
-    def begun(self, name: str, times: int, again: Callable[[], None]) -> str:
+    def begun(self, name, times, again):
         """The screen, once this check runs, or is over, which may be sooner than one looks, or is refused.
 
         A key that comes while a busy machine lays the page out anew can be lost: a student presses it again.
@@ -144,7 +143,7 @@ class Student:
             time.sleep(0.1)
         pytest.fail(f"Check {times} of {name} did not begin on:\n{self.terminal.screen()}")
 
-    def checked(self, name: str, times: int) -> None:
+    def checked(self, name, times):
         """Wait until the record has a check and the screen its answer."""
         until = time.monotonic() + 60.0
         while len(self.workspace.store.events("check", name)) < times or "Checking" in self.terminal.screen():
@@ -156,9 +155,7 @@ class Student:
             time.sleep(0.1)
 
 
-def test_a_lesson_is_read_and_done_from_its_title_to_its_last_line(
-    terminal: Terminal, workspace: Workspace
-) -> None:
+def test_a_lesson_is_read_and_done_from_its_title_to_its_last_line(terminal, workspace):
     terminal.line(f"{sys.executable} -m course lesson {LESSON}")
     terminal.wait("Space on")
     student = Student(terminal, workspace)
@@ -175,9 +172,7 @@ def test_a_lesson_is_read_and_done_from_its_title_to_its_last_line(
 
 @pytest.mark.parametrize("terminal", [(80, 24)], indirect=True, ids=["80x24"])
 @pytest.mark.parametrize("after", [0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5])
-def test_a_window_that_closes_while_the_reader_ends_leaves_nothing_running(
-    terminal: Terminal, workspace: Workspace, after: float
-) -> None:
+def test_a_window_that_closes_while_the_reader_ends_leaves_nothing_running(terminal, workspace, after):
     """Textual's thread that reads the keyboard went on, at full speed, where the terminal was gone."""
     terminal.line(f"sh -c 'echo $$ > pid; exec {sys.executable} -m course lesson {LESSON}'")
     terminal.wait("Space on")
@@ -194,17 +189,17 @@ def test_a_window_that_closes_while_the_reader_ends_leaves_nothing_running(
         pytest.fail("it still runs")
 
 
-def opened(terminal: Terminal, lesson: str = LESSON, before: str = "") -> str:
+def opened(terminal, lesson=LESSON, before=""):
     terminal.line(f"{before} {sys.executable} -m course lesson {lesson}".strip())
     terminal.wait("Space on", "? keys")
     return terminal.still()
 
 
-def foot(screen: str) -> str:
+def foot(screen):
     return screen.rstrip("\n").splitlines()[-1]
 
 
-def kept(screens: list[str], name: str) -> None:
+def kept(screens, name):
     if folder := os.environ.get("COURSE_SCREENS"):
         Path(folder).mkdir(parents=True, exist_ok=True)
         Path(folder, f"{name}.txt").write_text("\n\f\n".join(screens), "utf-8")
@@ -212,9 +207,7 @@ def kept(screens: list[str], name: str) -> None:
 
 @pytest.mark.parametrize("how", ["keys", "mouse"])
 @pytest.mark.parametrize("lesson", CATALOG.lesson_ids())
-def test_every_lesson_is_read_to_its_last_page(
-    terminal: Terminal, workspace: Workspace, lesson: str, how: str, request: pytest.FixtureRequest
-) -> None:
+def test_every_lesson_is_read_to_its_last_page(terminal, workspace, lesson, how, request):
     screens = [opened(terminal, lesson)]
     while "You have read this lesson." not in screens[-1]:
         assert len(screens) < 400, screens[-1]
@@ -235,7 +228,7 @@ def test_every_lesson_is_read_to_its_last_page(
 
 
 @pytest.mark.parametrize("terminal", [(80, 24)], indirect=True, ids=["80x24"])
-def test_without_colours_nothing_is_coloured_and_nothing_is_missing(terminal: Terminal) -> None:
+def test_without_colours_nothing_is_coloured_and_nothing_is_missing(terminal):
     opened(terminal, before="NO_COLOR=1")
     for _ in range(12):
         screen = terminal.coloured()
@@ -246,7 +239,7 @@ def test_without_colours_nothing_is_coloured_and_nothing_is_missing(terminal: Te
         terminal.still()
 
 
-def to_a_cell(terminal: Terminal) -> None:
+def to_a_cell(terminal):
     """Turn pages until a cell is at hand."""
     for _ in range(60):
         screen = terminal.still()
@@ -271,9 +264,7 @@ def to_a_cell(terminal: Terminal) -> None:
     ],
     ids=["page", "contents", "search", "help", "editor", "running", "turning"],
 )
-def test_ctrl_c_anywhere_leaves_the_terminal_as_it_was_and_keeps_the_place(
-    terminal: Terminal, keys: tuple[str, ...], shows: str
-) -> None:
+def test_ctrl_c_anywhere_leaves_the_terminal_as_it_was_and_keeps_the_place(terminal, keys, shows):
     opened(terminal)
     to_a_cell(terminal)
     where = terminal.still().splitlines()[0]

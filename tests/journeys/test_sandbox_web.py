@@ -36,7 +36,7 @@ _COLOURS = """() => {
 
 
 @pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory):
+def browser(tmp_path_factory):
     with sync_api.sync_playwright() as play:
         context = play.chromium.launch_persistent_context(
             tmp_path_factory.mktemp("chromium"), executable_path=CHROMIUM, headless=True, args=FLAGS
@@ -45,7 +45,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory):
         context.close()
 
 
-def complains(message) -> bool:
+def complains(message):
     """Whether the browser has something against the page, and not against how this test reads its pixels."""
     return message.type in {"error", "warning"} and "willReadFrequently" not in message.text
 
@@ -53,7 +53,7 @@ def complains(message) -> bool:
 class Sandbox:
     """A scene that is served, a page that shows it, and what went over the wire."""
 
-    def __init__(self, context, scene: str | None, size: tuple[int, int], folder: Path) -> None:
+    def __init__(self, context, scene, size, folder):
         played = ["play", scene] if scene else []
         self.server = subprocess.Popen(
             [sys.executable, "-m", "course", "sandbox", *played, "--web", "--no-browser"],
@@ -68,16 +68,15 @@ class Sandbox:
             assert line, f"the server ended: {said}"
             said += line
         self.address = found[0]
-        self.complaints: list[str] = []
-        self.requests: list[str] = []
-        self.frame: np.ndarray | None = None
-        self.names: list[str] = []
-        self.status: dict = {}
+        self.complaints = []
+        self.requests = []
+        self.frame = None
+        self.names = []
+        self.status = {}
         self.page = context.new_page()
         self.page.set_viewport_size({"width": size[0], "height": size[1]})
         self.page.on(
-            "console",
-            lambda message: self.complaints.append(message.text) if complains(message) else None,
+            "console", lambda message: self.complaints.append(message.text) if complains(message) else None
         )
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("request", lambda request: self.requests.append(request.url))
@@ -85,11 +84,11 @@ class Sandbox:
         self.page.goto(self.address)
         self.until(lambda: self.frame is not None and self.status)
 
-    def _wire(self, wire) -> None:
+    def _wire(self, wire):
         self.requests.append(wire.url)
         wire.on("framereceived", self._heard)
 
-    def _heard(self, data: str | bytes) -> None:
+    def _heard(self, data):
         if isinstance(data, bytes):
             numbers = np.frombuffer(data[: len(data) // 4 * 4], "<f4")  # a film has any length
             if numbers[0] == 1 and numbers[21] == 0:
@@ -104,23 +103,23 @@ class Sandbox:
             self.bodies = message["bodies"]
             self.names = [body["name"] for body in self.bodies]
 
-    def until(self, true, patience: float = 30.0) -> None:
+    def until(self, true, patience=30.0):
         end = time.monotonic() + patience
         while not true():
             assert time.monotonic() < end, "it did not happen"
             self.page.wait_for_timeout(20)
 
-    def body(self, name: str) -> tuple[float, ...]:
+    def body(self, name):
         """x, y, angle, vx, vy."""
         at = HEAD + 5 * self.names.index(name)
         return tuple(self.frame[at : at + 5].tolist())
 
-    def highest(self) -> str:
+    def highest(self):
         """The movable body without wheels that is highest."""
         hands = [body["name"] for body in self.bodies if not body["fixed"] and not body.get("wheels")]
         return max(hands, key=lambda name: self.body(name)[1])
 
-    def catch(self, name: str) -> None:
+    def catch(self, name):
         """Take hold of a body that moves, as somebody would: try again where it is now."""
         for _ in range(10):
             self.page.mouse.move(*self.pixel(*self.body(name)[:2]))
@@ -131,13 +130,13 @@ class Sandbox:
             self.page.mouse.up()
         pytest.fail(f"{name} cannot be caught")
 
-    def stand_at_the_start(self) -> None:
+    def stand_at_the_start(self):
         """Pause, and take everything back to where it began."""
         self.page.keyboard.press("Space")
         self.page.keyboard.press("r")
         self.until(lambda: self.status["paused"] and self.frame[2] == 0)
 
-    def drag(self, start: tuple[float, float], *way: tuple[float, float]) -> None:
+    def drag(self, start, *way):
         """Draw the mouse through places of the world."""
         self.page.mouse.move(*self.pixel(*start))
         self.page.mouse.down()
@@ -145,18 +144,18 @@ class Sandbox:
             self.page.mouse.move(*self.pixel(*place), steps=4)
         self.page.mouse.up()
 
-    def guess(self, number: str) -> None:
+    def guess(self, number):
         """Predict, and wait for the answers."""
         self.page.keyboard.press("p")
         self.page.get_by_label("Your guess").fill(number)
         self.page.keyboard.press("Enter")
         self.page.locator(".answers").wait_for(timeout=30_000)
 
-    def colours(self) -> int:
+    def colours(self):
         """How many different colours the picture of the world has."""
         return self.page.evaluate(_COLOURS)
 
-    def pixel(self, x: float, y: float) -> tuple[float, float]:
+    def pixel(self, x, y):
         """Where a place of the world is on the page."""
         box = self.page.locator("canvas.world").bounding_box()
         left, bottom, right, top = self.view
@@ -166,7 +165,7 @@ class Sandbox:
             box["y"] + box["height"] / 2 - (y - (bottom + top) / 2) * scale,
         )
 
-    def close(self) -> int:
+    def close(self):
         self.page.close()
         self.server.send_signal(signal.SIGINT)
         try:
@@ -177,10 +176,10 @@ class Sandbox:
 
 
 @pytest.fixture
-def sandbox(browser, tmp_path: Path):
-    made: list[Sandbox] = []
+def sandbox(browser, tmp_path):
+    made = []
 
-    def make(scene: str | None, size: tuple[int, int] = (1280, 800)) -> Sandbox:
+    def make(scene, size=(1280, 800)):
         made.append(Sandbox(browser, scene, size, tmp_path))
         return made[-1]
 
@@ -192,7 +191,7 @@ def sandbox(browser, tmp_path: Path):
         assert one.close() == 0
 
 
-def test_while_time_stands_a_drag_places_and_a_drag_of_the_arrows_tip_aims(sandbox) -> None:
+def test_while_time_stands_a_drag_places_and_a_drag_of_the_arrows_tip_aims(sandbox):
     at = sandbox("restitution-row")
     at.stand_at_the_start()
     x, y, *_ = at.body("ball-3")
@@ -213,7 +212,7 @@ def test_while_time_stands_a_drag_places_and_a_drag_of_the_arrows_tip_aims(sandb
     at.until(lambda: at.status["undo"] in {"", "the reset"} and at.body("ball-3")[3] == 0)
 
 
-def test_a_run_is_scrubbed_gone_on_from_the_middle_and_filmed(sandbox) -> None:
+def test_a_run_is_scrubbed_gone_on_from_the_middle_and_filmed(sandbox):
     at = sandbox("newtons-cradle")
     at.until(lambda: at.frame[2] > 1.2)
     at.page.locator("#line").focus()
@@ -230,7 +229,7 @@ def test_a_run_is_scrubbed_gone_on_from_the_middle_and_filmed(sandbox) -> None:
     assert Path(film.value.path()).read_bytes()[:6] == b"GIF89a"
 
 
-def test_a_drag_along_the_time_line_looks_where_the_pointer_is(sandbox) -> None:
+def test_a_drag_along_the_time_line_looks_where_the_pointer_is(sandbox):
     at = sandbox("newtons-cradle")
     at.until(lambda: at.frame[2] > 1.5)
     line = at.page.locator("#line")
@@ -245,7 +244,7 @@ def test_a_drag_along_the_time_line_looks_where_the_pointer_is(sandbox) -> None:
     at.page.mouse.up()
 
 
-def test_what_undo_does_to_a_slider_its_thumb_follows(sandbox) -> None:
+def test_what_undo_does_to_a_slider_its_thumb_follows(sandbox):
     at = sandbox("free-fall")
     slider = at.page.get_by_role("slider", name="gravity")
     before = slider.input_value()
@@ -256,7 +255,7 @@ def test_what_undo_does_to_a_slider_its_thumb_follows(sandbox) -> None:
     at.until(lambda: slider.input_value() == before, patience=3)
 
 
-def test_when_everything_has_left_the_picture_the_page_says_how_to_see_it_again(sandbox) -> None:
+def test_when_everything_has_left_the_picture_the_page_says_how_to_see_it_again(sandbox):
     at = sandbox("free-fall")
     at.page.get_by_text("Everything has left the picture").wait_for()
     at.page.keyboard.press("r")
@@ -267,7 +266,7 @@ def test_when_everything_has_left_the_picture_the_page_says_how_to_see_it_again(
     at.page.get_by_text("⤢ shows all of it").wait_for()
 
 
-def test_every_scene_opens_from_the_gallery_without_a_command(sandbox) -> None:
+def test_every_scene_opens_from_the_gallery_without_a_command(sandbox):
     at = sandbox(None)
     gallery = at.page.locator(".gallery .scene")
     gallery.nth(12).wait_for()
@@ -284,9 +283,7 @@ def test_every_scene_opens_from_the_gallery_without_a_command(sandbox) -> None:
     assert not at.page.locator(".gallery").is_visible()
 
 
-def test_the_scenes_own_numbers_are_the_first_sliders_and_its_file_becomes_ones_own(
-    sandbox, tmp_path
-) -> None:
+def test_the_scenes_own_numbers_are_the_first_sliders_and_its_file_becomes_ones_own(sandbox, tmp_path):
     at = sandbox("newtons-cradle")
     assert at.page.locator(".knob label").first.inner_text().lower() == "gap"
     at.page.get_by_role("slider", name="angle").press("End")
@@ -297,7 +294,7 @@ def test_the_scenes_own_numbers_are_the_first_sliders_and_its_file_becomes_ones_
     assert "default = 80" in (tmp_path / "my-newtons-cradle.toml").read_text()
 
 
-def test_wheel_zooms_a_drag_on_nothing_pans_and_a_tap_opens_a_body(sandbox) -> None:
+def test_wheel_zooms_a_drag_on_nothing_pans_and_a_tap_opens_a_body(sandbox):
     at = sandbox("restitution-row")
     at.page.keyboard.press("Space")
     at.until(lambda: at.status["paused"])
@@ -318,7 +315,7 @@ def test_wheel_zooms_a_drag_on_nothing_pans_and_a_tap_opens_a_body(sandbox) -> N
     at.until(lambda: "ball-2" not in at.names)
 
 
-def test_a_finger_drags_on_a_phone(sandbox) -> None:
+def test_a_finger_drags_on_a_phone(sandbox):
     at = sandbox("head-on", (390, 844))
     at.page.get_by_role("button", name="Reset").click()
     at.page.locator("label.speed input").focus()
@@ -326,7 +323,7 @@ def test_a_finger_drags_on_a_phone(sandbox) -> None:
     at.until(lambda: at.status["speed"] == 0.01 and not at.status["paused"])
     touch = at.page.context.new_cdp_session(at.page)
 
-    def finger(kind: str, *places: tuple[float, float]) -> None:
+    def finger(kind, *places):
         points = [{"x": x, "y": y} for x, y in places]
         touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
 
@@ -340,7 +337,7 @@ def test_a_finger_drags_on_a_phone(sandbox) -> None:
     assert at.page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
-def test_sliders_act_and_say_what_they_are_at(sandbox) -> None:
+def test_sliders_act_and_say_what_they_are_at(sandbox):
     at = sandbox("restitution-row")
     for name, key in (
         ("gravity", "Home"),
@@ -358,7 +355,7 @@ def test_sliders_act_and_say_what_they_are_at(sandbox) -> None:
     assert at.page.get_by_role("slider", name="step").get_attribute("aria-valuetext") == "2.08 ms"
 
 
-def test_the_question_follows_the_sliders_and_what_was_typed_stays(sandbox) -> None:
+def test_the_question_follows_the_sliders_and_what_was_typed_stays(sandbox):
     at = sandbox("bullet-wall")
     at.page.get_by_role("button", name="Predict?").click()
     question = at.page.locator(".card .question")
@@ -369,7 +366,7 @@ def test_the_question_follows_the_sliders_and_what_was_typed_stays(sandbox) -> N
     assert at.page.get_by_label("Your guess").input_value() == "0,2"
 
 
-def test_a_guess_is_set_beside_theory_and_simulation(sandbox) -> None:
+def test_a_guess_is_set_beside_theory_and_simulation(sandbox):
     at = sandbox("head-on")
     at.page.get_by_role("button", name="Predict?").click()
     at.page.get_by_label("Your guess").fill("two")
@@ -386,7 +383,7 @@ def test_a_guess_is_set_beside_theory_and_simulation(sandbox) -> None:
     at.until(lambda: at.status["stage"] == "run")
 
 
-def test_the_answers_lie_on_no_ball(sandbox) -> None:
+def test_the_answers_lie_on_no_ball(sandbox):
     at = sandbox("newtons-cradle")
     at.guess("1.6")
     card = at.page.get_by_label("Prediction", exact=True).bounding_box()
@@ -396,7 +393,7 @@ def test_the_answers_lie_on_no_ball(sandbox) -> None:
         assert not (name.startswith("ball") and across and card["y"] < y < card["y"] + card["height"]), name
 
 
-def test_a_reload_changes_nothing(sandbox) -> None:
+def test_a_reload_changes_nothing(sandbox):
     at = sandbox("head-on")
     at.guess("2")
     at.page.get_by_role("button", name="Pause").click()
@@ -414,7 +411,7 @@ def test_a_reload_changes_nothing(sandbox) -> None:
     assert at.page.locator(".answers").inner_text() == answers
 
 
-def test_everything_can_be_done_with_keys(sandbox) -> None:
+def test_everything_can_be_done_with_keys(sandbox):
     at = sandbox("head-on")
     reached = set()
     for _ in range(40):
@@ -469,7 +466,7 @@ def test_everything_can_be_done_with_keys(sandbox) -> None:
 
 
 @pytest.mark.parametrize("scene", scene_ids())
-def test_every_scene_is_drawn_dragged_set_and_reloaded(sandbox, scene: str, tmp_path: Path) -> None:
+def test_every_scene_is_drawn_dragged_set_and_reloaded(sandbox, scene, tmp_path):
     at = sandbox(scene)
     page, speed = at.page, at.page.locator("label.speed input")
     at.until(lambda: at.colours() >= 3 and at.frame[2] > 0)
@@ -536,19 +533,19 @@ _SMALL = """() => [...document.querySelectorAll('button, input, summary')].filte
 
 
 @pytest.fixture(scope="module")
-def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
+def axe(tmp_path_factory):
     return axe_core(tmp_path_factory.mktemp("axe"))
 
 
 @pytest.mark.parametrize(
     ("width", "scheme"), [(1280, "light"), (1280, "dark"), (390, "light"), (390, "dark")]
 )
-def test_axe_finds_nothing_on_any_screen(sandbox, axe: str, width: int, scheme: str) -> None:
+def test_axe_finds_nothing_on_any_screen(sandbox, axe, width, scheme):
     at = sandbox(None, (width, 844))
     at.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
     console = at.page.context.new_cdp_session(at.page)
 
-    def look(screen: str) -> None:
+    def look(screen):
         at.page.wait_for_timeout(400)
         console.send("Runtime.evaluate", {"expression": axe})  # as the page's policy lets no script do
         found = at.page.evaluate("() => axe.run()")
@@ -586,7 +583,7 @@ def test_axe_finds_nothing_on_any_screen(sandbox, axe: str, width: int, scheme: 
     look("the past")
 
 
-def test_another_page_reaches_nothing_even_with_the_address(browser, sandbox) -> None:
+def test_another_page_reaches_nothing_even_with_the_address(browser, sandbox):
     at = sandbox("head-on")
     elsewhere = browser.new_page()
     try:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from course.catalog.load import Catalog
-from tests.journeys.conftest import ROOT, Way, in_turn
+from tests.journeys.conftest import ROOT, in_turn
 from tests.journeys.test_line_journey import Lines
 
 CATALOG = Catalog()
@@ -16,12 +16,12 @@ EXERCISES = CATALOG.exercises()
 WARM_UPS = [CATALOG.exercise(name) for name in CATALOG.warm_up_ids()]
 
 
-def model(exercise_id: str) -> Path:
+def model(exercise_id):
     exercise = CATALOG.exercise(exercise_id)
     return ROOT / "solutions" / exercise.place / exercise.module
 
 
-def test_the_first_hour(student: Way, tmp_path: Path) -> None:
+def test_the_first_hour(student, tmp_path):
     """The demonstration, a workspace, the first lesson read to its end with every prediction made."""
     assert "7.32 times its initial value" in student("demo").stdout
     assert "course go" in student("init", "work").stdout
@@ -45,9 +45,7 @@ def test_the_first_hour(student: Way, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("shape", [(), ("--plain",)], ids=["fancy", "plain"])
-def test_five_tasks_in_a_row_without_leaving_the_loop(
-    student: Way, workspace: Path, shape: tuple[str, ...]
-) -> None:
+def test_five_tasks_in_a_row_without_leaving_the_loop(student, workspace, shape):
     """One program on one half of the screen; on the other an editor, which only saves."""
     environment = {**student.environment, "TERM": "xterm-256color"}
     lines = Lines(workspace, "go", *shape, command=student.command, environment=environment)
@@ -70,7 +68,7 @@ def test_five_tasks_in_a_row_without_leaving_the_loop(
     assert [one["id"] for one in done if one["state"] == "done"] == [task.id for task in five]
 
 
-def test_every_exercise_from_its_stub_to_the_zip(student: Way, workspace: Path) -> None:
+def test_every_exercise_from_its_stub_to_the_zip(student, workspace):
     assert EXERCISES
     tried = in_turn(EXERCISES, 2)
     for exercise in tried:
@@ -94,7 +92,7 @@ def test_every_exercise_from_its_stub_to_the_zip(student: Way, workspace: Path) 
     assert [one["state"] for one in done].count("complete") == len(tried)
 
 
-def test_warm_ups_from_start_to_pass(student: Way, workspace: Path) -> None:
+def test_warm_ups_from_start_to_pass(student, workspace):
     assert len(WARM_UPS) >= 32
     for warm_up in in_turn(WARM_UPS, 3):
         student("start", warm_up.id, cwd=workspace)
@@ -105,7 +103,7 @@ def test_warm_ups_from_start_to_pass(student: Way, workspace: Path) -> None:
     assert said.count(": 1 ") or "passes" in said
 
 
-def test_the_sandbox_the_quiz_and_what_was_done(student: Way, workspace: Path) -> None:
+def test_the_sandbox_the_quiz_and_what_was_done(student, workspace):
     played = student("sandbox", "play", "newtons-cradle", "--headless", "--duration", "2", cwd=workspace)
     assert played.stdout
     student("sandbox", "export", "unequal-masses", "--format", "mjcf", "-o", "world.xml", cwd=workspace)
@@ -123,7 +121,7 @@ def test_the_sandbox_the_quiz_and_what_was_done(student: Way, workspace: Path) -
     assert student("doctor", cwd=workspace).stdout
 
 
-def key(seed: int) -> dict[str, str]:
+def key(seed):
     """The right letters of a drawing of the quiz, which only its bank knows."""
     from course.quizzing.bank import Bank
 

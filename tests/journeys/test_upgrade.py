@@ -11,7 +11,6 @@ import shutil
 import sqlite3
 from contextlib import closing
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -21,9 +20,9 @@ from course.progress.store import Store
 MADE = Path(__file__).resolve().parents[1] / "fixtures" / "made_by_1_2_0"
 
 
-def _known(found: dict[str, Any]) -> dict[str, Any]:
+def _known(found):
     """What 1.2.0 said of the same record, in its words."""
-    told: dict[str, Any] = json.loads((MADE / "progress.json").read_text("utf-8"))
+    told = json.loads((MADE / "progress.json").read_text("utf-8"))
     same = {name: found[name] for name in ("quiz", "submissions")}
     for name in ("lessons", "exercises"):
         now = {one["id"]: one for one in found[name]}
@@ -31,7 +30,7 @@ def _known(found: dict[str, Any]) -> dict[str, Any]:
     return same
 
 
-def test_a_workspace_of_1_2_0_says_and_keeps_what_it_said_then(student, tmp_path: Path) -> None:
+def test_a_workspace_of_1_2_0_says_and_keeps_what_it_said_then(student, tmp_path):
     workspace = shutil.copytree(MADE / "workspace", tmp_path / "workspace")
     told = json.loads((MADE / "progress.json").read_text("utf-8"))
     assert _known(json.loads(student("progress", "--json", cwd=workspace).stdout)) == told
@@ -56,9 +55,7 @@ def test_a_workspace_of_1_2_0_says_and_keeps_what_it_said_then(student, tmp_path
     assert (after["lessons"], len(after["submissions"])) == (told["lessons"], 2)
 
 
-def test_who_read_how_contact_is_solved_in_1_2_0_has_read_both_lessons_that_came_of_it(
-    student, tmp_path: Path
-) -> None:
+def test_who_read_how_contact_is_solved_in_1_2_0_has_read_both_lessons_that_came_of_it(student, tmp_path):
     workspace = shutil.copytree(MADE / "workspace", tmp_path / "workspace")
     before = json.loads(student("progress", "--json", cwd=workspace).stdout)
     Store(workspace / ".course" / "progress.sqlite").append(
@@ -70,7 +67,7 @@ def test_who_read_how_contact_is_solved_in_1_2_0_has_read_both_lessons_that_came
     assert read == {"how-contact-is-solved", "what-contact-leaves-over"}
 
 
-def _rows(gradebook: Path) -> list[str]:
+def _rows(gradebook):
     with closing(sqlite3.connect(f"file:{gradebook}?mode=ro&immutable=1", uri=True)) as connection:
         return list(connection.iterdump())
 
@@ -79,14 +76,14 @@ def _rows(gradebook: Path) -> list[str]:
     ("name", "student_id", "exercise"), [("late", "cem", "collisions"), ("quiz", "ada", "validation")]
 )
 def test_a_gradebook_of_1_2_0_gives_its_grades_and_is_upgraded_once(
-    instructor, tmp_path: Path, name: str, student_id: str, exercise: str
-) -> None:
+    instructor, tmp_path, name, student_id, exercise
+):
     out = tmp_path / "grades"
     out.mkdir()
     shutil.copy(MADE / f"{name}.sqlite", out / "gradebook.sqlite")
     old, told = (out / "gradebook.sqlite").read_bytes(), (MADE / f"{name}.csv").read_text("utf-8-sig")
 
-    def grades() -> str:
+    def grades():
         return instructor("grade", "export", out, "--format", "csv", "-o", "-").stdout.removeprefix("\ufeff")
 
     assert grades() == told

@@ -1,7 +1,5 @@
 """Nothing is opened where there is no display, and what would have been opened is named."""
 
-from __future__ import annotations
-
 import webbrowser
 
 import pytest
@@ -12,11 +10,11 @@ from course import browser
 class Stand:
     """A browser that notes what it is asked to show."""
 
-    def __init__(self, basename: str) -> None:
+    def __init__(self, basename):
         self.basename = basename
-        self.shown: list[str] = []
+        self.shown = []
 
-    def open(self, address: str) -> bool:
+    def open(self, address):
         self.shown.append(address)
         return True
 
@@ -80,7 +78,7 @@ def test_a_browser_that_does_not_start_is_no_error(stand, monkeypatch):
 def test_how_to_forward_a_port_is_said_where_nothing_is_opened(stand, monkeypatch, show, display):
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("DISPLAY", display)
-    said: list[str] = []
+    said = []
     browser.invite("http://127.0.0.1:4321/token/", said.append, show=show)
     assert "ssh -N -L 4321:127.0.0.1:4321" in said[-1]
     assert not stand.shown

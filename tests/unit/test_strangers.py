@@ -1,7 +1,5 @@
 """Files that a stranger may have made end in the errors that readers know, soon and in little memory."""
 
-from __future__ import annotations
-
 import os
 import sqlite3
 import time
@@ -30,7 +28,7 @@ from course.strangers import in_utf8, no_programs, read_bytes, toml
         ("x = ", "Invalid value"),
     ],
 )
-def test_toml_that_no_person_writes_is_no_toml(text: str, why: str) -> None:
+def test_toml_that_no_person_writes_is_no_toml(text, why):
     begun = time.process_time()
     with pytest.raises(tomllib.TOMLDecodeError) as caught:
         toml(text)
@@ -38,14 +36,14 @@ def test_toml_that_no_person_writes_is_no_toml(text: str, why: str) -> None:
     assert time.process_time() - begun < 1.0
 
 
-def test_toml_that_a_person_writes_is_read_as_python_reads_it() -> None:
+def test_toml_that_a_person_writes_is_read_as_python_reads_it():
     text = (
         'a.b.c = 1\n[t."x.y"]\nz = [[1, -9223372036854775808], {u = nan}]\nw = """\n' + "a.b." * 5 + '"""\n'
     )
     assert str(toml(text)) == str(tomllib.loads(text))
 
 
-def test_only_an_ordinary_file_is_read_and_no_more_of_it_than_was_meant(tmp_path: Path) -> None:
+def test_only_an_ordinary_file_is_read_and_no_more_of_it_than_was_meant(tmp_path):
     (tmp_path / "file").write_bytes(b"x" * 100)
     (tmp_path / "link").symlink_to("file")
     assert read_bytes(tmp_path / "link", 100) == b"x" * 100
@@ -62,7 +60,7 @@ def test_only_an_ordinary_file_is_read_and_no_more_of_it_than_was_meant(tmp_path
         assert caught.value.strerror
 
 
-def test_what_a_shell_hands_over_is_read() -> None:
+def test_what_a_shell_hands_over_is_read():
     reading, writing = os.pipe()
     os.write(writing, b"handed over")
     os.close(writing)
@@ -90,7 +88,7 @@ _PLAIN = "CREATE TABLE t (x TEXT NOT NULL, y REAL, PRIMARY KEY (x)) WITHOUT ROWI
         "CREATE VIRTUAL TABLE f USING fts5(x)",
     ],
 )
-def test_a_database_that_computes_is_refused_and_the_same_without_that_is_read(statement: str) -> None:
+def test_a_database_that_computes_is_refused_and_the_same_without_that_is_read(statement):
     with closing(sqlite3.connect(":memory:")) as database:
         database.execute(_PLAIN)
         database.execute("CREATE INDEX plain ON t (y, x)")
@@ -100,7 +98,7 @@ def test_a_database_that_computes_is_refused_and_the_same_without_that_is_read(s
             no_programs(database, millions=1)
 
 
-def test_what_has_no_end_is_stopped() -> None:
+def test_what_has_no_end_is_stopped():
     with closing(sqlite3.connect(":memory:")) as database:
         no_programs(database, millions=2)
         with pytest.raises(sqlite3.OperationalError, match="interrupted"):
@@ -108,7 +106,7 @@ def test_what_has_no_end_is_stopped() -> None:
 
 
 @pytest.mark.parametrize("claimed", ["punycode", "idna", "base64", "no_such", "utf-16"])
-def test_an_encoding_that_a_module_only_claims_leaves_its_bytes_readable(claimed: str) -> None:
+def test_an_encoding_that_a_module_only_claims_leaves_its_bytes_readable(claimed):
     """Some codecs raise other errors than those of a byte that cannot be decoded."""
     source = f"# coding: {claimed}\nx = 1  # ##\n".encode()
     assert b"x = 1" in in_utf8(source)

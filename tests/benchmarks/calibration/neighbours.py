@@ -11,8 +11,6 @@ what it is told, to be read: no program can say whether a mistake is the one mad
 fails is right.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import copy

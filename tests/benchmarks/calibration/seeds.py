@@ -17,8 +17,6 @@ checks, what a mutant is told by the known mistakes, the kinds of diagnoses and 
 by how it is worded. --kept says how much of what is asked for stands there.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import json

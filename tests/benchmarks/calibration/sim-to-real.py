@@ -11,8 +11,6 @@ of results can be made in parts and merged. ``seeds.py`` proves the checks' verd
 room there is between them.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.util
 import json

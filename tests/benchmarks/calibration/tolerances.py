@@ -10,8 +10,6 @@ with bounds; of `integrators` also the slopes behind the order checks and their 
 must keep apart. What is graded is what ``seeds.py`` grades.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

@@ -10,8 +10,6 @@ The verdicts: *same* is a difference of at most 1e-6 of the value; *within sprea
 range over the phases or starts of either side; anything else *differs*.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import subprocess

@@ -4,8 +4,6 @@ Two bodies' frictions and restitutions are multiplied, so each gets the root of 
 ``doPhysics(dt, 0, dt)`` takes dt as one step; ``doPhysics(dt)`` alone steps by 1/60 s and interpolates.
 """
 
-from __future__ import annotations
-
 import math
 
 import measures

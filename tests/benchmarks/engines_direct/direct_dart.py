@@ -1,7 +1,5 @@
 """DART through dartpy. Two bodies' restitutions are multiplied; of their frictions the smaller one acts."""
 
-from __future__ import annotations
-
 import math
 
 import dartpy as dart

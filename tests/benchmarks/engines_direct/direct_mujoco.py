@@ -4,8 +4,6 @@ It has no coefficient of restitution. Well set, a contact is a spring and a damp
 ratio 0.2553 gives half of the speed back when the force cannot pull; 0 gives all of it.
 """
 
-from __future__ import annotations
-
 import measures
 import mujoco
 

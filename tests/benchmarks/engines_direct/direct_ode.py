@@ -4,8 +4,6 @@ Its contacts take the friction and the restitution of a surface table, so these 
 speed below which nothing bounces has no default in ODE; it is 0 here.
 """
 
-from __future__ import annotations
-
 import measures
 from panda3d import ode
 from panda3d.core import Quat, Vec4

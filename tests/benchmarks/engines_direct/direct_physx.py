@@ -1,7 +1,5 @@
 """PhysX 5 on the processor through sapien. Two materials' coefficients are averaged."""
 
-from __future__ import annotations
-
 import warnings
 
 import measures
@@ -14,11 +12,7 @@ with warnings.catch_warnings():
     from sapien import physx
 
 LIVELY = {"bounce_threshold": 0.01}
-WELL_SET = {
-    "small-drop": LIVELY,
-    "clash": LIVELY,
-    "mass-ratio": {"solver_position_iterations": 100},
-}
+WELL_SET = {"small-drop": LIVELY, "clash": LIVELY, "mass-ratio": {"solver_position_iterations": 100}}
 EXTRA = {
     "255 iterations": ("mass-ratio", {"solver_position_iterations": 255}),
     "the older solver (PGS)": ("bounce", {"enable_tgs": False}),

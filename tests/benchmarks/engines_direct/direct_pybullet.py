@@ -3,8 +3,6 @@
 Two bodies' frictions and restitutions are multiplied, so each gets the root of what is to act.
 """
 
-from __future__ import annotations
-
 import math
 
 import measures

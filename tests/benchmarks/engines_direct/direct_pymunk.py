@@ -3,23 +3,15 @@
 Two shapes' frictions and elasticities are multiplied, so each gets the root of what is to act.
 """
 
-from __future__ import annotations
-
 import math
 
 import measures
 import pymunk
 
 SLOP = {"collision_slop": 1e-4}
-WELL_SET = {
-    "bounce": SLOP,
-    "small-drop": SLOP,
-    "mass-ratio": {"iterations": 100},
-}
+WELL_SET = {"bounce": SLOP, "small-drop": SLOP, "mass-ratio": {"iterations": 100}}
 #: What one option does, beyond the tests as they come and well set.
-EXTRA = {
-    "1000 iterations": ("mass-ratio", {"iterations": 1000, **SLOP}),
-}
+EXTRA = {"1000 iterations": ("mass-ratio", {"iterations": 1000, **SLOP})}
 
 
 def make(bodies, settings, gravity, friction, restitution, floor):

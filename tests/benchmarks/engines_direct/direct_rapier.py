@@ -1,7 +1,5 @@
 """Rapier through its own Python package. Of two coefficients the average acts: equal ones act as they are."""
 
-from __future__ import annotations
-
 import measures
 import rapier3d as rapier
 

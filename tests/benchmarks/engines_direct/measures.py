@@ -8,8 +8,6 @@ Nothing here imports the course. What the course says about an engine is confirm
 line with the course's adapters; a mistake in one of the two shows as a difference.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import statistics

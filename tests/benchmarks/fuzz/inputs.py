@@ -1,7 +1,5 @@
 """Inputs nobody would hand in, made from a generator of random numbers: the same numbers, the same input."""
 
-from __future__ import annotations
-
 import io
 import json
 import random
@@ -53,17 +51,8 @@ _ODD: tuple[Any, ...] = (
     "x" * 5000, ["def double(x):\n", "    return x"], [1], [None], {"a": {}},
 )  # fmt: skip
 _KEYS = (
-    "cell_type",
-    "source",
-    "input",
-    "metadata",
-    "outputs",
-    "execution_count",
-    "id",
-    "course",
-    "role",
-    "name",
-)
+    "cell_type", "source", "input", "metadata", "outputs", "execution_count", "id", "course", "role", "name",
+)  # fmt: skip
 
 
 def notebook(chance: Chance) -> bytes:

@@ -17,8 +17,6 @@ is one.
                 of a sandbox and of progress, packs of solutions, gradebooks, sources with a declared encoding
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import math

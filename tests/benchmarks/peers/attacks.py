@@ -5,8 +5,6 @@ the grader once: what counts is whether it can be done, not whether it is found.
 be harmless where it succeeds: 3 GB, 200 MB, one file of ours, one address of this machine.
 """
 
-from __future__ import annotations
-
 HONEST = """
 def double(x):
     return x + x

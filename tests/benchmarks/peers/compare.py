@@ -11,8 +11,6 @@ student by student and on all at once. Scores are compared: whoever grades faste
 A peer takes some ten wall seconds a submission, longer on a busy machine; CPU is hardly touched by that.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import csv
@@ -124,17 +122,8 @@ def install(peer: str, packages: list[str], folder: Path) -> Path:
 def notebook(cells: list[dict[str, Any]]) -> str:
     """A notebook of code cells."""
     kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
-    made = [
-        {
-            "cell_type": "code",
-            "execution_count": None,
-            "outputs": [],
-            "id": f"cell-{number}",
-            "metadata": {},
-            **cell,
-        }
-        for number, cell in enumerate(cells)
-    ]
+    code: dict[str, Any] = {"cell_type": "code", "execution_count": None, "outputs": [], "metadata": {}}
+    made = [code | {"id": f"cell-{number}"} | cell for number, cell in enumerate(cells)]
     return json.dumps({"cells": made, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5})
 
 
@@ -188,15 +177,8 @@ def nbgrader(
 
 #: Makes autograder.zip of the tests in a folder.
 OTTER_GENERATE = (
-    "generate",
-    "-t",
-    "tests",
-    "-c",
-    "otter_config.json",
-    "--no-environment",
-    "-o",
-    "autograder.zip",
-)
+    "generate", "-t", "tests", "-c", "otter_config.json", "--no-environment", "-o", "autograder.zip",
+)  # fmt: skip
 
 
 def otter_test(folder: Path, name: str, code: str, points: float, *, hidden: bool = False) -> None:

@@ -3,8 +3,6 @@
 What the notebooks of other graders call: they have no worker to call functions in.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import inspect
 import sys

@@ -1,7 +1,5 @@
 """Hostile documents by syntax, each made from a right one of its format; and what is no document at all."""
 
-from __future__ import annotations
-
 import io
 import json
 import os

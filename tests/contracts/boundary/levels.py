@@ -5,8 +5,6 @@ A test calls ``require_level("L3")``. Where the machine lacks that level the tes
 that lost its protection would go on passing.
 """
 
-from __future__ import annotations
-
 import functools
 import os
 

@@ -13,11 +13,9 @@ import signal
 import socket
 import tomllib
 import uuid
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import process_time
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -28,7 +26,7 @@ from course.catalog.locate import Content
 from course.isolation import launch
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import Verdict, for_student
+from course.scoring.verdict import for_student
 from tests.benchmarks.protection import descendants_cpu
 from tests.contracts.boundary.levels import require_level
 from tests.contracts.boundary.users import ROOT, marked
@@ -64,7 +62,7 @@ class Attack(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     padded: bool = False
 
 
-def _read_corpus() -> dict[str, Attack]:
+def _read_corpus():
     document = tomllib.loads((CORPUS / "attacks.toml").read_text("utf-8"))
     assert document.pop("format_version") == 1
     return {name: msgspec.convert(entry, Attack) for name, entry in document.items()}
@@ -87,10 +85,10 @@ class Arena:
     signals: list[int] = field(default_factory=list)
 
     @property
-    def module(self) -> str:
+    def module(self):
         return self.session.exercise.module
 
-    def grade(self, source: str | bytes, only: str = "") -> Verdict:
+    def grade(self, source, only=""):
         raw = source if isinstance(source, bytes) else source.encode()
         return self.session.grade(Submission({self.module: raw}), only=[only] if only else ())
 
@@ -98,7 +96,7 @@ class Arena:
 class Listener:
     """Sockets of each kind on this machine that must stay silent."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self._tcp = socket.create_server(("127.0.0.1", 0))
         self.port = self._tcp.getsockname()[1]
         self._udp = socket.socket(type=socket.SOCK_DGRAM)
@@ -109,7 +107,7 @@ class Listener:
         for one in (self._tcp, self._udp, self._unix):
             one.setblocking(False)
 
-    def heard(self) -> list[str]:
+    def heard(self):
         found = []
         for name, receive in (
             ("tcp", self._tcp.accept),
@@ -121,12 +119,12 @@ class Listener:
                 found.append(name)
         return found
 
-    def close(self) -> None:
+    def close(self):
         for one in (self._tcp, self._udp, self._unix):
             one.close()
 
 
-def _catalog(exercise: str) -> Catalog:
+def _catalog(exercise):
     if exercise != "arena":
         return Catalog()
     folders = {name: ARENA / name for name in ("exercises", "lessons", "quiz", "solutions", "graders")}
@@ -134,7 +132,7 @@ def _catalog(exercise: str) -> Catalog:
 
 
 @contextlib.contextmanager
-def _arena(level: str, exercise: str, folder: Path, patch: pytest.MonkeyPatch) -> Iterator[Arena]:
+def _arena(level, exercise, folder, patch):
     require_level(level)
     marker = uuid.uuid4().hex
     inherited = launch.environment
@@ -162,18 +160,18 @@ def _arena(level: str, exercise: str, folder: Path, patch: pytest.MonkeyPatch) -
 
 
 @pytest.fixture(scope="module")
-def arenas(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+def arenas(tmp_path_factory):
     """Opens each session on first use and keeps it, as a grading run does."""
     with contextlib.ExitStack() as stack, pytest.MonkeyPatch.context() as patch:
 
         @functools.cache
-        def arena(level: str, exercise: str) -> Arena:
+        def arena(level, exercise):
             return stack.enter_context(_arena(level, exercise, tmp_path_factory.mktemp("grader"), patch))
 
         yield arena
 
 
-def cases() -> Iterator[Any]:
+def cases():
     """Each attack at each level; in an ordinary run at one level, each level in turn."""
     turns = itertools.count()
     for name, attack in ATTACKS.items():
@@ -189,11 +187,11 @@ CASES = sorted(cases(), key=lambda case: str(case.values[1]), reverse=True)
 
 
 @pytest.mark.parametrize(("name", "level"), CASES)
-def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arenas: Any) -> None:
+def test_an_attack_gains_nothing_and_leaves_nothing(name, level, arenas):
     attack = ATTACKS[name]
     if attack.machine and attack.machine != platform.machine():
         pytest.skip(f"written for {attack.machine}")
-    arena: Arena = arenas(level, attack.exercise)
+    arena = arenas(level, attack.exercise)
     source = _source(name, attack, arena)
     before = marked(arena.marker)
     one = attack.slow or level == "L1"  # a new process for each check would take a third of a second
@@ -222,7 +220,7 @@ def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arena
     _expect_model_unharmed(arena)
 
 
-def _expect_model_unharmed(arena: Arena) -> None:
+def _expect_model_unharmed(arena):
     following = arena.grade(arena.model)
     problems = [
         (check.id, check.status, check.message) for check in following.checks if check.status != "pass"
@@ -231,7 +229,7 @@ def _expect_model_unharmed(arena: Arena) -> None:
     assert not problems, "the next submission was harmed"
 
 
-def _source(name: str, attack: Attack, arena: Arena) -> str:
+def _source(name, attack, arena):
     known = {
         "PORT": arena.listener.port,
         "SECRET": arena.secret,
@@ -248,7 +246,7 @@ def _source(name: str, attack: Attack, arena: Arena) -> str:
     return f"{arena.wrong}\n\n{text}\n{padding}"
 
 
-def _expect_outcome(attack: Attack, verdict: Verdict) -> None:
+def _expect_outcome(attack, verdict):
     assert verdict.state in _listed(attack.state), (verdict.error, [c.message for c in verdict.checks])
     if verdict.error is not None and attack.error:
         assert verdict.error.code in _listed(attack.error)
@@ -260,17 +258,17 @@ def _expect_outcome(attack: Attack, verdict: Verdict) -> None:
         assert statuses[attack.only] in _listed(attack.status)
 
 
-def _listed(value: str | list[str]) -> list[str]:
+def _listed(value):
     return [value] if isinstance(value, str) else value
 
 
-def _cpu_s() -> float:
+def _cpu_s():
     """CPU seconds of this process, the grader, and of those below it so far, those that ended included."""
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     return process_time() + ended.ru_utime + ended.ru_stime + descendants_cpu(os.getpid())
 
 
-def _expect_silence(verdict: Verdict, never: list[str]) -> None:
+def _expect_silence(verdict, never):
     """Nothing a student sees, nor anything a report shows of public checks, holds any of these."""
     seen = msgspec.structs.replace(verdict, checks=tuple(map(for_student, verdict.checks)))
     plain = _texts(msgspec.to_builtins(seen))
@@ -280,7 +278,7 @@ def _expect_silence(verdict: Verdict, never: list[str]) -> None:
     assert not any(FILE_CANARY in text for text in everything), "it read what it must not"
 
 
-def _texts(value: Any) -> list[str]:
+def _texts(value):
     """Every text and number in a report, as text."""
     if isinstance(value, dict):
         return [text for key, item in value.items() for text in (*_texts(key), *_texts(item))]
@@ -289,7 +287,7 @@ def _texts(value: Any) -> list[str]:
     return [str(value)]
 
 
-def _files_left(arena: Arena) -> list[str]:
+def _files_left(arena):
     """What an attack wrote anywhere but in its own folder; all of them use one prefix. Removed, if any."""
     own = [
         Path(os.__file__).parent,
@@ -306,7 +304,7 @@ def _files_left(arena: Arena) -> list[str]:
     return [str(path) for path in found]
 
 
-def test_every_attack_has_an_entry_and_says_what_it_tries() -> None:
+def test_every_attack_has_an_entry_and_says_what_it_tries():
     others = ("wrong_", "every_value")
     files = {path.stem: path for path in CORPUS.glob("*.py") if not path.stem.startswith(others)}
     assert files.keys() == ATTACKS.keys()
@@ -314,8 +312,8 @@ def test_every_attack_has_an_entry_and_says_what_it_tries() -> None:
         assert re.match(r'"""[A-Z].{10,110}\.', path.read_text("utf-8")), path
 
 
-def test_the_model_earns_full_marks_and_the_wrong_code_almost_none(arenas: Any) -> None:
-    arena: Arena = arenas("L1", "arena")
+def test_the_model_earns_full_marks_and_the_wrong_code_almost_none(arenas):
+    arena = arenas("L1", "arena")
     model = arena.grade(arena.model)
     assert model.all_pass
     assert model.score == model.max_score
@@ -324,7 +322,7 @@ def test_the_model_earns_full_marks_and_the_wrong_code_almost_none(arenas: Any) 
 
 @pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.soak)], ids=["some", "all"])
 @pytest.mark.parametrize("exercise", EXERCISES)
-def test_no_plain_value_makes_a_check_itself_fail(exercise: str, every: bool) -> None:
+def test_no_plain_value_makes_a_check_itself_fail(exercise, every):
     """What a student returns is never our error, so it can never put a verdict off.
 
     In an ordinary run an exercise gets every second answer, by turns again and again or followed by others,

@@ -9,23 +9,17 @@ arguments, or from the third call on. Whatever a function returns, its checks en
 student's own error, and in a verdict that can be written down.
 """
 
-from __future__ import annotations
-
 import ast
-from collections.abc import Iterator
 from functools import cache
-from typing import Any
 
 import msgspec
 import pytest
 
 from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise
 from course.scoring.judging.outcomes import NOT_JUDGED
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import CheckResult, Verdict
 
 CATALOG = Catalog()
 #: What stands in the place of a function; ``own`` is the right one. Each check of its task waits for "slow",
@@ -77,22 +71,22 @@ SOONEST = 0.3
 class Renamed(ast.NodeTransformer):
     """Give a function another name wherever the rest of a file uses it."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name):
         self.name = name
 
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+    def visit_FunctionDef(self, node):
         given = [*node.args.args, *node.args.kwonlyargs, *node.args.posonlyargs]
         if node.name == self.name:
             node.name = f"own_{self.name}"
         return node if any(one.arg == self.name for one in given) else self.generic_visit(node)
 
-    def visit_Name(self, node: ast.Name) -> ast.AST:
+    def visit_Name(self, node):
         if node.id == self.name:
             node.id = f"own_{self.name}"
         return node
 
 
-def broken(source: str, names: list[str], way: str) -> str:
+def broken(source, names, way):
     """The solution with functions replaced, and its own copies for the rest of it."""
     tree, replaced = ast.parse(source), ""
     for name in names:
@@ -102,11 +96,11 @@ def broken(source: str, names: list[str], way: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def session_of() -> Iterator[Any]:
-    opened: list[GradingSession] = []
+def session_of():
+    opened = []
 
     @cache
-    def session(exercise: Exercise, timeout: float) -> GradingSession:
+    def session(exercise, timeout):
         opened.append(GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=timeout)))
         return opened[-1]
 
@@ -115,17 +109,17 @@ def session_of() -> Iterator[Any]:
         one.close()
 
 
-def graded(session: GradingSession, source: str) -> dict[str, list[CheckResult]]:
+def graded(session, source):
     """The results, by task."""
     verdict = session.grade(Submission({session.exercise.module: source.encode()}))
     assert verdict.state == "graded", verdict.error
-    by_task: dict[str, list[CheckResult]] = {}
+    by_task = {}
     for check in verdict.checks:
         by_task.setdefault(check.task, []).append(check)
     return by_task
 
 
-def check_one(session: GradingSession, task: str, kind: str) -> None:
+def check_one(session, task, kind):
     path = solution_path(CATALOG, session.exercise)
     by_task = graded(session, broken(path.read_text("utf-8"), [task], WAYS[kind]))
     lost = [check for check in by_task[task] if check.status != "pass"]
@@ -140,7 +134,7 @@ def check_one(session: GradingSession, task: str, kind: str) -> None:
     assert not fallen, f"{task} {kind} takes others with it"
 
 
-def cases() -> Iterator[Any]:
+def cases():
     """Everything; in an ordinary run every way once, each in another task."""
     number = 0
     for exercise in CATALOG.exercises():
@@ -158,15 +152,13 @@ def cases() -> Iterator[Any]:
 
 
 @pytest.mark.parametrize(("exercise", "task", "kind"), list(cases()))
-def test_a_broken_function_costs_its_own_task_only(
-    session_of: Any, exercise: Exercise, task: str, kind: str
-) -> None:
+def test_a_broken_function_costs_its_own_task_only(session_of, exercise, task, kind):
     patience = SOON.get(exercise.id, SOONEST) if kind == "slow" else LATE
     check_one(session_of(exercise, patience), task, kind)
 
 
 @pytest.mark.parametrize("exercise", CATALOG.exercises(), ids=lambda exercise: exercise.id)
-def test_what_is_printed_and_plotted_costs_nothing(session_of: Any, exercise: Exercise) -> None:
+def test_what_is_printed_and_plotted_costs_nothing(session_of, exercise):
     path = solution_path(CATALOG, exercise)
     source = broken(path.read_text("utf-8"), [task.id for task in exercise.task], HARMLESS)
     by_task = graded(session_of(exercise, LATE), source)
@@ -291,13 +283,13 @@ def {name}(*args, **names):
 """
 
 
-def spoilt(source: str, name: str, way: str, part: str, time: str) -> str:
+def spoilt(source, name, way, part, time):
     """A solution one of whose functions gives spoilt results."""
     wrapped = REPLACED.format(name=name, way=SPOILT[way], part=part, time=time)
     return f"{FUTURE}import numpy as np\n{SPOIL}{source.replace(FUTURE, '')}\n{wrapped}"
 
 
-def plans() -> list[tuple[str, str, str]]:
+def plans():
     """Every way, with the parts and times it can make a difference in."""
     every = [(way, part, "always") for way in SPOILT for part in PARTS]
     return every + [
@@ -305,7 +297,7 @@ def plans() -> list[tuple[str, str, str]]:
     ]
 
 
-def verdicts(session: GradingSession, task: str, plan: tuple[str, str, str]) -> Iterator[Verdict]:
+def verdicts(session, task, plan):
     """Of the checks of a task, on a solution spoilt there."""
     source = spoilt(solution_path(CATALOG, session.exercise).read_text("utf-8"), task, *plan)
     checks = [check.id for check in session.checks if check.task == task]
@@ -314,7 +306,7 @@ def verdicts(session: GradingSession, task: str, plan: tuple[str, str, str]) -> 
         yield session.grade(Submission({session.exercise.module: source.encode()}), only=only)
 
 
-def spoilt_cases() -> Iterator[Any]:
+def spoilt_cases():
     """Every task with every plan under soak; in an ordinary run each plan once, each in another task."""
     every = plans()
     tasks = [(exercise, task.id) for exercise in CATALOG.exercises() for task in exercise.task]
@@ -329,9 +321,7 @@ def spoilt_cases() -> Iterator[Any]:
 
 
 @pytest.mark.parametrize(("exercise", "task", "chosen"), list(spoilt_cases()))
-def test_no_spoilt_result_ends_in_a_fault_of_the_grader(
-    session_of: Any, exercise: Exercise, task: str, chosen: list[tuple[str, str, str]]
-) -> None:
+def test_no_spoilt_result_ends_in_a_fault_of_the_grader(session_of, exercise, task, chosen):
     session, faults = session_of(exercise, LATE), []
     for plan in chosen:
         for verdict in verdicts(session, task, plan):

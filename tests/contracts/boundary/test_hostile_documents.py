@@ -5,19 +5,14 @@ than with a right one at most, stays below 200 MB, and what is wrong is never "a
 of DOORS has a file, the syntax whose documents are tried there, and the command that reads it.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
-import sqlite3
 import subprocess
 import sys
-from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -101,14 +96,14 @@ class Door:
     other: tuple[tuple[str, Made], ...] = ()
 
     @property
-    def documents(self) -> dict[str, Made]:
+    def documents(self):
         return {**SYNTAXES[self.syntax], **SPECIAL, **dict(self.other)}
 
 
-def _forged(table: str, column: str, text: str) -> Made:
+def _forged(table, column, text):
     """A gradebook in which every row has another content there, and every digest is right again."""
 
-    def change(book: sqlite3.Connection) -> None:
+    def change(book):
         names = TABLES[table]
         rows = [list(row) for row in book.execute(f"SELECT {', '.join(names)} FROM {table}")]
         if not rows and table in _ROWS:
@@ -121,12 +116,12 @@ def _forged(table: str, column: str, text: str) -> Made:
     return _sealed_again(change)
 
 
-def _fact(name: str, text: str) -> Made:
+def _fact(name, text):
     return _sealed_again(lambda book: book.execute(row_into("meta", "INSERT OR REPLACE"), (name, text)))
 
 
-def _sealed_again(change: Callable[[sqlite3.Connection], Any]) -> Made:
-    def make(path: Path) -> None:
+def _sealed_again(change):
+    def make(path):
         with closing(open_file(path, writing=True)) as book:
             change(book)
             seal(book)
@@ -135,7 +130,7 @@ def _sealed_again(change: Callable[[sqlite3.Connection], Any]) -> Made:
     return make
 
 
-_ROWS: dict[str, tuple[Any, ...]] = {
+_ROWS = {
     "students": ("ada", "{}"),
     "found": ("ada", "doubling", "{}"),
     "journal": (1, "2026-01-01T00:00:00Z", "me", "override", "ada", "doubling", "why", "1", "2"),
@@ -146,11 +141,11 @@ _ODD = {"none": "", "deep": _DEEP, "list": "[1]", "number": "9" * 5000, "object"
 _COUNT = f"SELECT count(*) FROM ({ENDLESS} SELECT i FROM n)"
 
 
-def _view(table: str) -> Made:
+def _view(table):
     return as_view(table, ", ".join(f"i AS {name}" for name in (*TABLES[table], "row_sha256")))
 
 
-_BOOKS: tuple[tuple[str, Made], ...] = (
+_BOOKS = (
     *((f"view-{table}", _view(table)) for table in TABLES),
     ("triggers", sql(*(f"CREATE TRIGGER t_{of} BEFORE INSERT ON {of} BEGIN {_COUNT}; END" for of in TABLES))),
     *(
@@ -170,7 +165,7 @@ _BOOKS: tuple[tuple[str, Made], ...] = (
 )  # fmt: skip
 
 
-def _book(*words: str) -> Door:
+def _book(*words):
     return Door("out/gradebook.sqlite", "sqlite", words, other=_BOOKS)
 
 
@@ -247,7 +242,7 @@ LOOKED_FOR = {
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def place(tmp_path_factory):
     """A folder with a right document of each kind."""
     at = tmp_path_factory.mktemp("place")
     shutil.copytree(MINI, at / "content")
@@ -257,7 +252,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
             (at / name / student).mkdir(parents=True)
     environment = _environment(at, mini=True)
 
-    def ran(*words: str, code: int = 0) -> None:
+    def ran(*words, code=0):
         done = in_process(*words, cwd=at, env=environment)
         assert done.returncode == code, done.stderr
 
@@ -297,7 +292,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return at
 
 
-def _environment(at: Path, *, mini: bool) -> dict[str, str]:
+def _environment(at, *, mini):
     kept = {name: value for name, value in os.environ.items() if not name.startswith("COURSE_")}
     chosen = {"COURSE_CONTENT": str(at / "content")} if mini else {}
     paths = os.pathsep.join(filter(None, [str(ROOT), kept.get("PYTHONPATH", "")]))
@@ -332,7 +327,7 @@ os.write(int(sys.argv[1]), json.dumps(told).encode())
 """
 
 
-def measured(words: tuple[str, ...], at: Path, *, mini: bool) -> Ended:
+def measured(words, at, *, mini):
     reading, writing = os.pipe()
     with open(reading, "rb") as told:  # noqa: PTH123 - of an open descriptor
         done = subprocess.run(
@@ -346,11 +341,11 @@ def measured(words: tuple[str, ...], at: Path, *, mini: bool) -> Ended:
 
 
 @pytest.fixture(scope="module")
-def right(place: Path, tmp_path_factory: pytest.TempPathFactory) -> Any:
+def right(place, tmp_path_factory):
     """What a command takes with the right document, by door."""
-    known: dict[str, Ended] = {}
+    known = {}
 
-    def ended(name: str) -> Ended:
+    def ended(name):
         if name not in known:
             at = tmp_path_factory.mktemp("right") / "place"
             shutil.copytree(place, at)
@@ -360,7 +355,7 @@ def right(place: Path, tmp_path_factory: pytest.TempPathFactory) -> Any:
     return ended
 
 
-def _cases() -> list[Any]:
+def _cases():
     """Each document at each door; in an ordinary run one at each, the doors' turns going round."""
     found = []
     for turn, (name, door) in enumerate(DOORS.items()):
@@ -376,14 +371,12 @@ def _cases() -> list[Any]:
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.soak) for name in DOORS if name != "scheduler"]
 )
-def test_the_right_document_is_taken(right: Any, name: str) -> None:
+def test_the_right_document_is_taken(right, name):
     assert right(name).code in TAKEN, right(name).said
 
 
 @pytest.mark.parametrize(("name", "document"), _cases())
-def test_a_hostile_document_is_taken_or_refused_in_words(
-    place: Path, right: Any, tmp_path: Path, name: str, document: str
-) -> None:
+def test_a_hostile_document_is_taken_or_refused_in_words(place, right, tmp_path, name, document):
     if document == "unreadable" and os.geteuid() == 0:
         pytest.skip("root reads everything")
     door, at = DOORS[name], tmp_path / "place"

@@ -4,14 +4,11 @@ At L1 a submission is a process of the grader's own user. The rest of the corpus
 test_attacks.py says so; here is what only a level without walls makes worth trying.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
 import sys
 import uuid
-from pathlib import Path
 from time import monotonic, sleep
 
 import pytest
@@ -61,7 +58,7 @@ def f():
 
 
 @pytest.mark.parametrize("user", USERS)
-def test_nothing_that_the_grader_has_open_is_reachable_through_proc(user: str) -> None:
+def test_nothing_that_the_grader_has_open_is_reachable_through_proc(user):
     assert run_as(user, _TRIAL, "L1", _REACH).strip() == "[]"
 
 
@@ -78,7 +75,7 @@ def f():
 """
 
 
-def test_what_is_said_to_be_open_is_open(tmp_path: Path) -> None:
+def test_what_is_said_to_be_open_is_open(tmp_path):
     """The row says so; were it no longer true, the row would have to be rewritten."""
     secret = tmp_path / "secret"
     secret.write_text("secret", "utf-8")
@@ -97,7 +94,7 @@ _ENDLESS = {
 
 
 @pytest.mark.parametrize(("level", "user"), LEVELS_AND_USERS)
-def test_workers_end_with_a_grader_that_was_killed(level: str, user: str) -> None:
+def test_workers_end_with_a_grader_that_was_killed(level, user):
     require_level(level)
     for name, source in _ENDLESS.items() if level == "L1" else [("in C", _ENDLESS["in C"])]:
         marker = uuid.uuid4().hex
@@ -117,7 +114,7 @@ def test_workers_end_with_a_grader_that_was_killed(level: str, user: str) -> Non
         _wait_until(lambda: not marked(marker), f"{name}: a worker outlived its grader")  # noqa: B023
 
 
-def _wait_until(true: object, otherwise: str) -> None:
+def _wait_until(true, otherwise):
     end = monotonic() + 60  # a bound for the test, not a measure: it is met in milliseconds
     while monotonic() < end:
         if callable(true) and true():

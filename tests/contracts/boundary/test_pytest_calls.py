@@ -5,17 +5,13 @@ Each test names one thing that must go on being true. When a new major of pytest
 that one file, or the cap in pyproject.toml stays.
 """
 
-from __future__ import annotations
-
 import gc
 import os
 import re
 import sys
 import textwrap
 import tomllib
-from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -70,7 +66,7 @@ _CHECKS = '''
 '''
 
 
-def _around(body: str, above: str = "", mark: str = "", taken: str = "") -> str:
+def _around(body, above="", mark="", taken=""):
     """A file with one check, and what its author put around it."""
     return f'''
 import pytest
@@ -89,17 +85,17 @@ def test_it({taken}):
 class Fake:
     """What stands for a submission; the checks above ask nothing else of it."""
 
-    def __init__(self, name: str = "one", seed: int = 1) -> None:
+    def __init__(self, name="one", seed=1):
         self.name = name
         self.seed = seed
-        self.log: list[Any] = []
+        self.log = []
 
 
 @pytest.fixture
-def collect(tmp_path: Path) -> Iterator[Callable[..., CollectedChecks]]:
-    opened: list[CollectedChecks] = []
+def collect(tmp_path):
+    opened = []
 
-    def collect(*sources: str) -> CollectedChecks:
+    def collect(*sources):
         files = []
         for number, source in enumerate(sources or (_CHECKS,)):
             folder = tmp_path / f"file{number}"
@@ -115,11 +111,11 @@ def collect(tmp_path: Path) -> Iterator[Callable[..., CollectedChecks]]:
         checks.close()
 
 
-def _run(checks: CollectedChecks, name: str, submission: Any) -> BaseException | None:
+def _run(checks, name, submission):
     return checks.run(next(check for check in checks.checks if check.id == name), submission)
 
 
-def test_names_titles_and_marks_are_read(collect: Any) -> None:
+def test_names_titles_and_marks_are_read(collect):
     found = collect().checks
     assert [(check.id, check.title, check.task, check.points, check.requires) for check in found] == [
         ("passes", "It passes", "a", 1.0, ()),
@@ -129,7 +125,7 @@ def test_names_titles_and_marks_are_read(collect: Any) -> None:
     ]
 
 
-def test_fixtures_are_made_anew_for_every_run(collect: Any) -> None:
+def test_fixtures_are_made_anew_for_every_run(collect):
     checks, first, second = collect(), Fake("first"), Fake("second")
     for submission in (first, second, second):
         assert _run(checks, "passes", submission) is None
@@ -137,7 +133,7 @@ def test_fixtures_are_made_anew_for_every_run(collect: Any) -> None:
     assert len(first.log) == 3
 
 
-def test_what_a_check_raises_comes_out_as_it_was_raised(collect: Any) -> None:
+def test_what_a_check_raises_comes_out_as_it_was_raised(collect):
     checks = collect()
     found = _run(checks, "fails", Fake("Ada"))
     assert isinstance(found, CheckFailed)
@@ -149,18 +145,18 @@ def test_what_a_check_raises_comes_out_as_it_was_raised(collect: Any) -> None:
 @pytest.mark.parametrize(
     ("fixture", "kind"), [("raise OSError", OSError), ("yield\n    raise KeyError", KeyError)]
 )
-def test_a_fixture_that_fails_is_no_pass(fixture: str, kind: type, collect: Any) -> None:
+def test_a_fixture_that_fails_is_no_pass(fixture, kind, collect):
     above = f"@pytest.fixture\ndef broken():\n    {fixture}"
     assert isinstance(_run(collect(_around("", above, taken="broken")), "it", Fake()), kind)
 
 
 @pytest.mark.parametrize("body", ["pytest.skip('not today')", "pytest.xfail('known')"])
-def test_skipping_from_within_is_no_pass(body: str, collect: Any) -> None:
+def test_skipping_from_within_is_no_pass(body, collect):
     assert _run(collect(_around(body)), "it", Fake()) is not None
 
 
 @pytest.mark.parametrize("taken", ["submission", "submission, own"])
-def test_a_check_may_compute_with_infinite_numbers(taken: str, collect: Any) -> None:
+def test_a_check_may_compute_with_infinite_numbers(taken, collect):
     """Numpy would warn, and a warning may be an error."""
     above = "import numpy as np\n@pytest.fixture\ndef own():\n    pass"
     submission = Fake()
@@ -169,7 +165,7 @@ def test_a_check_may_compute_with_infinite_numbers(taken: str, collect: Any) -> 
     assert np.isnan(submission.log).all()
 
 
-def test_a_check_that_pytest_never_called_is_no_pass(collect: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_check_that_pytest_never_called_is_no_pass(collect, monkeypatch):
     checks = collect()
     monkeypatch.setattr("course.scoring.checks.collected._run_item", lambda _item: None)
     assert isinstance(_run(checks, "passes", Fake()), RuntimeError)
@@ -201,9 +197,7 @@ def test_a_check_that_pytest_never_called_is_no_pass(collect: Any, monkeypatch: 
         (["test_it"], "", "", "request", "seen.append(request.node.name)"),
     ],
 )  # fmt: skip
-def test_whatever_an_author_puts_around_a_check_counts(
-    said: list[str], above: str, mark: str, taken: str, body: str, collect: Any
-) -> None:
+def test_whatever_an_author_puts_around_a_check_counts(said, above, mark, taken, body, collect):
     checks = collect(_around(body, f"seen = []\n{above}", mark, taken))
     for _ in range(2):
         checks._items["it"].obj.__globals__["seen"].clear()
@@ -212,7 +206,7 @@ def test_whatever_an_author_puts_around_a_check_counts(
         assert (outcome is None) == bool(said)
 
 
-def test_a_check_has_its_parameters(collect: Any) -> None:
+def test_a_check_has_its_parameters(collect):
     mark = "@pytest.mark.parametrize('x', [1, 2])"
     checks = collect(_around("submission.log.append(x)", mark=mark, taken="submission, x"))
     submission = Fake()
@@ -220,7 +214,7 @@ def test_a_check_has_its_parameters(collect: Any) -> None:
     assert submission.log == [1, 2]
 
 
-def test_a_package_around_the_checks_sets_itself_up(collect: Any, tmp_path: Path) -> None:
+def test_a_package_around_the_checks_sets_itself_up(collect, tmp_path):
     (tmp_path / "file0").mkdir()
     (tmp_path / "file0" / "__init__.py").write_text(
         "import os\ndef setup_module():\n    os.environ['SET_UP'] = 'yes'\n", "utf-8"
@@ -229,16 +223,14 @@ def test_a_package_around_the_checks_sets_itself_up(collect: Any, tmp_path: Path
     assert _run(collect(_around(body)), "it", Fake()) is None
 
 
-def test_a_check_that_gives_something_is_pytests_to_judge(collect: Any) -> None:
+def test_a_check_that_gives_something_is_pytests_to_judge(collect):
     above = "class Later:\n    def __await__(self):\n        yield"
     checks = collect(_around("return Later()", above))
     assert "async def functions are not natively supported" in str(_run(checks, "it", Fake()))
 
 
-def test_it_makes_no_difference_whether_pytest_calls_a_check(
-    collect: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def outcomes(checks: CollectedChecks) -> list[Any]:
+def test_it_makes_no_difference_whether_pytest_calls_a_check(collect, monkeypatch):
+    def outcomes(checks):
         submission = Fake(seed=7)
         said = [(name, str(_run(checks, name, submission))) for name in ("draws", "breaks")]
         return [*said, *submission.log]
@@ -251,7 +243,7 @@ def test_it_makes_no_difference_whether_pytest_calls_a_check(
     assert outcomes(called) == outcomes(by_pytest)
 
 
-def test_numbers_drawn_depend_on_the_seed_and_the_check_alone(collect: Any) -> None:
+def test_numbers_drawn_depend_on_the_seed_and_the_check_alone(collect):
     checks = collect()
     drawn = []
     for seed in (1, 1, 2):
@@ -261,7 +253,7 @@ def test_numbers_drawn_depend_on_the_seed_and_the_check_alone(collect: Any) -> N
     assert drawn[0] == drawn[1] != drawn[2]
 
 
-def test_public_checks_come_first_and_required_ones_before_those_that_need_them(collect: Any) -> None:
+def test_public_checks_come_first_and_required_ones_before_those_that_need_them(collect):
     hidden = _CHECKS.replace("test_", "test_hidden_").replace('("passes", "draws")', '("hidden_draws")')
     checks = collect(_CHECKS, hidden)
     assert [check.visibility for check in checks.checks] == [Visibility.PUBLIC] * 4 + [Visibility.HIDDEN] * 4
@@ -270,7 +262,7 @@ def test_public_checks_come_first_and_required_ones_before_those_that_need_them(
     assert order.index("hidden_draws") < order.index("hidden_fails")
 
 
-def test_two_sessions_at_once_do_not_mix(collect: Any) -> None:
+def test_two_sessions_at_once_do_not_mix(collect):
     first, second = collect(), collect()
     one, two = Fake("one"), Fake("two")
     assert "one" in str(_run(first, "fails", one))
@@ -278,10 +270,10 @@ def test_two_sessions_at_once_do_not_mix(collect: Any) -> None:
     assert one.log == two.log == ["set up", "torn down"]
 
 
-def test_many_runs_keep_nothing(collect: Any) -> None:
+def test_many_runs_keep_nothing(collect):
     checks = collect()
 
-    def grade(times: int) -> int:
+    def grade(times):
         for _ in range(times):
             for check in checks.checks:
                 checks.run(check, Fake())
@@ -302,9 +294,7 @@ def test_many_runs_keep_nothing(collect: Any) -> None:
         ("sitecustomize.py", "raise RuntimeError('the working folder is on the path')"),
     ],
 )
-def test_files_around_the_checks_change_nothing(
-    file: str, text: str, collect: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_files_around_the_checks_change_nothing(file, text, collect, tmp_path, monkeypatch):
     (tmp_path / "file0").mkdir()
     for folder in (tmp_path, tmp_path / "file0"):
         (folder / file).write_text(text, "utf-8")
@@ -315,9 +305,7 @@ def test_files_around_the_checks_change_nothing(
     assert sys.path == path
 
 
-def test_settings_in_the_environment_change_nothing_and_stay(
-    collect: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_settings_in_the_environment_change_nothing_and_stay(collect, monkeypatch):
     for name in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
         monkeypatch.setenv(name, "--no-such-option" if name == "PYTEST_ADDOPTS" else "no_such_plugin")
     before = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
@@ -325,7 +313,7 @@ def test_settings_in_the_environment_change_nothing_and_stay(
     assert {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"} == before
 
 
-def test_nothing_is_written_beside_the_checks(collect: Any, tmp_path: Path) -> None:
+def test_nothing_is_written_beside_the_checks(collect, tmp_path):
     checks = collect()
     _run(checks, "fails", Fake())
     assert [path.name for path in (tmp_path / "file0").iterdir()] == ["checks.py"]
@@ -342,13 +330,13 @@ def test_nothing_is_written_beside_the_checks(collect: Any, tmp_path: Path) -> N
         ("import pytest\n\n@pytest.mark.pionts(1)\ndef test_a():\n    '''Title'''", "'pionts' not found"),
     ],
 )
-def test_a_file_that_is_wrong_is_named(source: str, problem: str, collect: Any) -> None:
+def test_a_file_that_is_wrong_is_named(source, problem, collect):
     with pytest.raises(ContentError, match=problem) as caught:
         collect(source)
     assert "checks.py" in str(caught.value)
 
 
-def test_the_pytest_that_runs_here_is_one_the_project_allows() -> None:
+def test_the_pytest_that_runs_here_is_one_the_project_allows():
     project = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text("utf-8"))["project"]
     requirement = next(entry for entry in project["dependencies"] if entry.startswith("pytest"))
     low, high = re.fullmatch(r"pytest>=([\d.]+),<(\d+)", requirement).groups()

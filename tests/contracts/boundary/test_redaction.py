@@ -1,7 +1,5 @@
 """A hidden number does not reach its student, however it is sent."""
 
-from __future__ import annotations
-
 import pytest
 
 from course.isolation.levels import Level
@@ -16,7 +14,7 @@ _CHOOSE = {"which of all ends", "time of a right answer"}
 
 
 @pytest.mark.parametrize("level", soak_unless([Level.L3], Level))
-def test_a_hidden_number_does_not_reach_its_student(level: str) -> None:
+def test_a_hidden_number_does_not_reach_its_student(level):
     require_level(level)
     for name, (arrived, noted) in trial(4, level).items():
         assert len(arrived) <= (_WAYS if name in _CHOOSE else 1), name

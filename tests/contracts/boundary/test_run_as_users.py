@@ -1,12 +1,9 @@
 """What once broke a run, in one class, graded by root and by an ordinary user: nobody else loses by it."""
 
-from __future__ import annotations
-
 import html
 import json
 import platform
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -64,13 +61,13 @@ def doublings(x, n):
 )
 
 
-def _notebook(cell: str) -> bytes:
+def _notebook(cell):
     made = {"cell_type": "code", "source": cell, "metadata": {}, "outputs": []}
     return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [made]}).encode()
 
 
 #: student -> file, content; all but the model's are hostile or broken
-CLASS: dict[str, tuple[str, bytes]] = {
+CLASS = {
     "a statement bomb": (
         "doubling.ipynb",
         _notebook(f"# get_ipython\n{_WRONG.format('pass', 'pass')}" + "x = 1\n" * 30_000),
@@ -90,7 +87,7 @@ CLASS: dict[str, tuple[str, bytes]] = {
 
 
 @pytest.mark.parametrize(("level", "user"), LEVELS_AND_USERS)
-def test_a_class_of_what_once_broke_is_graded_to_the_end(level: str, user: str, tmp_path: Path) -> None:
+def test_a_class_of_what_once_broke_is_graded_to_the_end(level, user, tmp_path):
     require_level(level)
     # The bomb takes seconds to be read, whatever level comes after: the strongest stands for all.
     handed_in = {name: file for name, file in CLASS.items() if level == "L3" or name != "a statement bomb"}
@@ -133,7 +130,7 @@ found.close()
 @pytest.mark.parametrize(
     ("attack", "ends"), [("neighbour_calls", "[1.0]"), ("zygote_memory", "exit code 77")]
 )
-def test_nothing_tells_of_a_neighbour(attack: str, ends: str, level: str, user: str) -> None:
+def test_nothing_tells_of_a_neighbour(attack, ends, level, user):
     require_level(level)
     if attack == "neighbour_calls" and platform.machine() != "x86_64":
         pytest.skip("its numbers of system calls are those of x86-64")

@@ -1,7 +1,5 @@
 """Runs a piece of Python as root and as an ordinary user: what holds for one need not hold for the other."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import os
@@ -39,7 +37,7 @@ def connect(seconds):
 """
 
 
-def command_as(user: str, *command: str) -> list[str]:
+def command_as(user, *command):
     """The command as that user; skips the calling test where it cannot be run so."""
     if (os.getuid() == 0) == (user == "root"):
         return list(command)
@@ -48,7 +46,7 @@ def command_as(user: str, *command: str) -> list[str]:
     return ["unshare", "--user", "--map-user=1000", "--map-group=1000", *command]
 
 
-def run_as(user: str, program: str, *arguments: str) -> str:
+def run_as(user, program, *arguments):
     """What a program prints, run with the course importable."""
     done = subprocess.run(
         command_as(user, sys.executable, "-c", program, *arguments),
@@ -62,7 +60,7 @@ def run_as(user: str, program: str, *arguments: str) -> str:
     return done.stdout
 
 
-def marked(marker: str) -> set[int]:
+def marked(marker):
     """Living processes with this in their environment.
 
     Of one that belongs to another user or may not be looked at nothing can be said here.
@@ -77,7 +75,7 @@ def marked(marker: str) -> set[int]:
 
 
 @functools.cache
-def _can_unshare() -> bool:
+def _can_unshare():
     if shutil.which("unshare") is None:
         return False
     return subprocess.run(["unshare", "--user", "true"], capture_output=True, check=False).returncode == 0

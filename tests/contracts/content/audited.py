@@ -1,7 +1,5 @@
 """The audit of the course in parts: each exercise alone, and the rest, so that no worker has it all."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 from collections.abc import Iterator, Sequence

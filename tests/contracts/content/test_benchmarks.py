@@ -1,7 +1,5 @@
 """The benchmarks are run by hand, so what they rely on, and what relies on them, is tested here."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -18,7 +16,7 @@ MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"
 
 
 @pytest.mark.parametrize("here", [True, False])
-def test_a_submission_is_graded_with_the_seed_that_was_sown(here: bool) -> None:
+def test_a_submission_is_graded_with_the_seed_that_was_sown(here):
     catalog = Catalog()
     exercise = catalog.exercise("fall-time")
     submission = Submission({exercise.module: exercise.stub_path.read_bytes()})
@@ -31,9 +29,7 @@ def test_a_submission_is_graded_with_the_seed_that_was_sown(here: bool) -> None:
             loaded.close()
 
 
-def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(tmp_path, monkeypatch):
     """As a program, its entry, a check or a known mistake changes, its line no longer holds."""
     catalog = Catalog()
     exercise = catalog.exercise("collisions")
@@ -69,9 +65,7 @@ def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(
         assert not seeds.proven(exercise, catalog)
 
 
-def test_an_exercise_that_was_never_graded_under_all_seeds_has_nothing_on_record(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_an_exercise_that_was_never_graded_under_all_seeds_has_nothing_on_record(monkeypatch):
     """And need not have its diagnoses in a file, as those have."""
     monkeypatch.setenv("COURSE_CONTENT", str(MINI))
     catalog = Catalog()

@@ -1,7 +1,5 @@
 """The course that is shipped is right, as ``course author check`` says: here all but what exercises prove."""
 
-from __future__ import annotations
-
 import pytest
 
 from course.authoring.coverage import read_coverage
@@ -10,7 +8,6 @@ from course.authoring.exercises.diagnosis import as_one, code_of, hypotheses_of,
 from course.authoring.exercises.grading import solution_path
 from course.authoring.exercises.proofs import Record, Reported, caught_by
 from course.authoring.report import Findings
-from course.catalog.load import Catalog
 from course.cli.author.commands import is_command
 from course.handed_in import limits
 from course.ids import WARM_UPS
@@ -19,11 +16,11 @@ from tests.contracts.content.audited import CATALOG, EXERCISES, IN_PART, program
 
 
 @pytest.fixture(scope="module")
-def catalog() -> Catalog:
+def catalog():
     return CATALOG
 
 
-def test_the_audit_finds_nothing_wrong_and_looks_at_everything(catalog: Catalog) -> None:
+def test_the_audit_finds_nothing_wrong_and_looks_at_everything(catalog):
     """At a lesson called as an exercise is, where that one is audited."""
     report = IN_PART(without=EXERCISES, is_command=is_command)
     assert [f"{p.where}: {p.message} {p.help}" for p in report.problems] == []
@@ -35,7 +32,7 @@ def test_the_audit_finds_nothing_wrong_and_looks_at_everything(catalog: Catalog)
     assert report.graded == sum(map(programs, report.exercises))
 
 
-def test_the_table_of_the_chapter_is_as_long_as_the_chapter(catalog: Catalog) -> None:
+def test_the_table_of_the_chapter_is_as_long_as_the_chapter(catalog):
     coverage = read_coverage(catalog).value
     assert coverage.source_lines == 394
     # Counted in the chapter.
@@ -43,29 +40,29 @@ def test_the_table_of_the_chapter_is_as_long_as_the_chapter(catalog: Catalog) ->
     assert [counts[kind] for kind in ("objective", "exercise", "question")] == [5, 5, 5]
 
 
-def test_the_first_warm_up_of_all_is_the_program_with_faults(catalog: Catalog) -> None:
+def test_the_first_warm_up_of_all_is_the_program_with_faults(catalog):
     assert catalog.warm_ups()[0].id == "first-program"
 
 
-def test_some_handouts_have_faults_that_are_declared(catalog: Catalog) -> None:
+def test_some_handouts_have_faults_that_are_declared(catalog):
     """The audit compares them with what the checks tell the stub."""
     every = (*catalog.exercises(), *catalog.warm_ups())
     faulty = {one.id for one in every if any(task.fault for task in one.task)}
     assert {"first-program", "collisions"} <= faulty
 
 
-def test_a_grading_run_opens_the_zip_of_a_student_who_did_everything(catalog: Catalog) -> None:
+def test_a_grading_run_opens_the_zip_of_a_student_who_did_everything(catalog):
     """`course submit --warm-ups` puts a file for each in, and the manifest."""
     assert len([*catalog.exercises(), *catalog.warm_ups()]) + 1 <= limits.MAX_FILES
 
 
-def test_exercises_and_lists_of_them_know_no_warm_ups(catalog: Catalog) -> None:
+def test_exercises_and_lists_of_them_know_no_warm_ups(catalog):
     assert not set(catalog.exercise_ids()) & set(catalog.warm_up_ids())
     assert not any(exercise.is_warm_up for exercise in catalog.exercises())
     assert all(warm_up.is_warm_up for warm_up in catalog.warm_ups())
 
 
-def test_the_program_with_faults_says_what_its_report_remembers(catalog: Catalog) -> None:
+def test_the_program_with_faults_says_what_its_report_remembers(catalog):
     """Once the fault that stops it is mended, and nothing else."""
     warm_up = catalog.exercise("first-program")
     stub = warm_up.stub_path.read_text(encoding="utf-8")
@@ -83,15 +80,13 @@ def test_the_program_with_faults_says_what_its_report_remembers(catalog: Catalog
         assert float(said.split()[0]) == pytest.approx(wanted, rel=0.12, abs=0.0)
 
 
-def _summary(source: str) -> list[tuple[str, str]]:
-    module: dict[str, object] = {"__name__": "program"}
+def _summary(source):
+    module = {"__name__": "program"}
     exec(compile(source, "program", "exec"), module)
-    return module["summary"]()  # type: ignore[operator, no-any-return]
+    return module["summary"]()
 
 
-def test_the_audit_refuses_a_table_with_an_untrue_row_or_one_that_survives(
-    catalog: Catalog, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_audit_refuses_a_table_with_an_untrue_row_or_one_that_survives(catalog, monkeypatch):
     exercise = catalog.exercise("integrators")
     rows = [Reported("rk4_step", ("EQUAL_WEIGHTS",), said, 1) for said in ("STAGES_NOT_CHAINED", "survives")]
     record = Record(
@@ -108,7 +103,7 @@ def test_the_audit_refuses_a_table_with_an_untrue_row_or_one_that_survives(
     ]
 
 
-def test_what_decides_about_a_program_includes_what_answers_for_it(catalog: Catalog) -> None:
+def test_what_decides_about_a_program_includes_what_answers_for_it(catalog):
     """A reference that draws other engines decides as much as a check; the model solution is a program."""
     exercise = catalog.exercise("engine-comparison")
     code = code_of(catalog, exercise)
@@ -119,7 +114,7 @@ def test_what_decides_about_a_program_includes_what_answers_for_it(catalog: Cata
     assert b"FunctionDef(name='_linear_damping'" not in code
 
 
-def test_how_a_check_is_worded_decides_about_no_program(catalog: Catalog) -> None:
+def test_how_a_check_is_worded_decides_about_no_program(catalog):
     exercise = catalog.exercise("engine-comparison")
     checks = (exercise.readme_path.parent / "checks.py").read_text("utf-8")
     title = next(line for line in checks.splitlines() if line.startswith('    """')).strip(' "')
@@ -127,16 +122,14 @@ def test_how_a_check_is_worded_decides_about_no_program(catalog: Catalog) -> Non
 
 
 @pytest.mark.parametrize("code", ["RETURNS_ARGUMENT", "MUTATES_INPUT"])
-def test_the_hint_at_a_loop_that_hands_an_argument_back_is_about_new_rows(
-    catalog: Catalog, code: str
-) -> None:
+def test_the_hint_at_a_loop_that_hands_an_argument_back_is_about_new_rows(catalog, code):
     task = catalog.exercise("integrators").task_called("integrate")
     given = task.following({code}, ())
     assert given is not None
     assert "are new" in task.hints[given]
 
 
-def test_two_changed_terms_that_make_one_known_mistake_are_that_mistake(catalog: Catalog) -> None:
+def test_two_changed_terms_that_make_one_known_mistake_are_that_mistake(catalog):
     exercise = catalog.exercise("integrators")
     for codes, found in (
         (("ENDS_ONLY", "STAGES_NOT_CHAINED"), ("RK4_IS_HEUN",)),

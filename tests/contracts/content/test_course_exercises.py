@@ -1,7 +1,5 @@
 """The exercises that are shipped are right, as ``course author check`` says of each."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -22,7 +20,7 @@ from tests.contracts.content.audited import (
 
 
 @pytest.mark.parametrize("exercise", EXERCISES)
-def test_the_audit_finds_nothing_wrong(exercise: str) -> None:
+def test_the_audit_finds_nothing_wrong(exercise):
     report = changed(exercise)
     assert wrong(report) == []
     assert report.exercises == (exercise,)
@@ -32,7 +30,7 @@ def test_the_audit_finds_nothing_wrong(exercise: str) -> None:
 
 @pytest.mark.soak
 @pytest.mark.parametrize("exercise", EXERCISES)
-def test_the_audit_finds_nothing_wrong_with_any_program(exercise: str) -> None:
+def test_the_audit_finds_nothing_wrong_with_any_program(exercise):
     report = IN_PART(exercise)
     assert wrong(report) == []
     assert report.exercises == (exercise,)
@@ -49,10 +47,9 @@ KNOWN = [
 
 @pytest.mark.soak
 @pytest.mark.parametrize("exercise", KNOWN)
-def test_what_checks_say_where_no_wrong_program_is_known_is_on_record(exercise: str) -> None:
+def test_what_checks_say_where_no_wrong_program_is_known_is_on_record(exercise):
     it = CATALOG.exercise(exercise)
     kept = read_record(CATALOG, it)
-    assert kept is not None
     told = rows_of(CATALOG, it, scopes=("alone",))["alone"]
     assert [row for row in told if row not in kept.rows["alone"]] == []
     assert len(told) == len(kept.rows["alone"])

@@ -7,9 +7,6 @@ minutes, and then read 815 words before the first question of a lesson. So: a qu
 run right after it, and a task within four.
 """
 
-from __future__ import annotations
-
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import pytest
@@ -17,7 +14,7 @@ import pytest
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.reading.parts import Script, read_script
+from course.reading.parts import read_script
 
 CATALOG = Catalog(content())
 TO_THE_QUESTION, TO_ITS_RUN, TO_A_TASK = 250, 200, 600
@@ -32,7 +29,7 @@ class Start:
     task: int
 
 
-def start_of(script: Script) -> Start:
+def start_of(script):
     words = script.weights
     cell = script.shown_cells[0].index
     asked = max(one.index for one in script.questions if one.index < cell)
@@ -40,7 +37,7 @@ def start_of(script: Script) -> Start:
     return Start(sum(words[:asked]), sum(words[asked:cell]), sum(words[:task]))
 
 
-def too_late(start: Start) -> Sequence[str]:
+def too_late(start):
     limits = {"question": TO_THE_QUESTION, "run": TO_ITS_RUN, "task": TO_A_TASK}
     found = {name: (getattr(start, name), limit) for name, limit in limits.items()}
     return [
@@ -49,12 +46,12 @@ def too_late(start: Start) -> Sequence[str]:
 
 
 @pytest.mark.parametrize("lesson_id", CATALOG.lesson_ids())
-def test_a_lesson_begins_with_a_question_its_run_and_a_warm_up(lesson_id: str) -> None:
+def test_a_lesson_begins_with_a_question_its_run_and_a_warm_up(lesson_id):
     script = read_script(CATALOG.lesson(lesson_id), CATALOG.warm_ups(lesson_id))
     assert too_late(start_of(script)) == []
 
 
-def test_a_page_more_to_read_first_is_too_late() -> None:
+def test_a_page_more_to_read_first_is_too_late():
     lesson_id = CATALOG.lesson_ids()[0]
     script = read_script(CATALOG.lesson(lesson_id), CATALOG.warm_ups(lesson_id))
     longer = replace(script, weights=(TO_A_TASK, *script.weights[1:]))

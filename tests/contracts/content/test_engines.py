@@ -5,8 +5,6 @@ least or, where a value sits at a known place, as wide as its last digits; where
 worse, its own band says so.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

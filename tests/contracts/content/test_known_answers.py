@@ -4,11 +4,8 @@ A wheel has no references: the public checks with fixed inputs take what they ex
 Each known wrong program is told the same there as beside the references.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, is_dataclass
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +17,7 @@ from course.scoring import kit
 from course.scoring.explain.story import read_table
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import OURS, CheckResult
+from course.scoring.verdict import OURS
 
 CATALOG = Catalog()
 #: Ten thousand times what sums of some hundred doubles lose.
@@ -36,14 +33,13 @@ ANSWERED = [
 MUTANTS = {name: mistakes_of(CATALOG, CATALOG.exercise(name)).wrong for name in ANSWERED}
 
 
-def _told(exercise_id: str, step: int) -> dict[str, list[CheckResult]]:
+def _told(exercise_id, step):
     """What the checks of its task say of wrong programs, by file: of each ``step``-th of the tasks that have
     known answers.
     """
     exercise = CATALOG.exercise(exercise_id)
     solution = Submission({exercise.module: solution_path(CATALOG, exercise).read_bytes()})
     table = read_table(exercise.readme_path.parent)
-    assert table is not None
     with GradingSession(exercise, CATALOG, scope="public", terms=Terms(home=True, timeout=5.0)) as session:
         checks = session.grade(solution).checks
         tasks = {check.task for check in checks if check.id in table.answers}
@@ -56,7 +52,7 @@ def _told(exercise_id: str, step: int) -> dict[str, list[CheckResult]]:
         return told
 
 
-def _same(one: Any, other: Any) -> bool:
+def _same(one, other):
     """Equal but for rounding, which differs from machine to machine, and of the same kinds all the way down.
 
     numpy's own numbers are as good as Python's.
@@ -77,7 +73,7 @@ def _same(one: Any, other: Any) -> bool:
 
 
 @pytest.mark.parametrize("exercise_id", ANSWERED)
-def test_a_known_answer_is_of_the_kind_that_the_reference_gives(exercise_id: str) -> None:
+def test_a_known_answer_is_of_the_kind_that_the_reference_gives(exercise_id):
     for check, right in kit.companion(exercise_id, "bundles").known().items():
         for one, known in zip(right, kit.known_answers(exercise_id, check), strict=True):
             assert _same(one, known), (check, one, known)
@@ -85,9 +81,7 @@ def test_a_known_answer_is_of_the_kind_that_the_reference_gives(exercise_id: str
 
 @pytest.mark.parametrize("step", [4, pytest.param(1, marks=pytest.mark.soak)])
 @pytest.mark.parametrize("exercise_id", ANSWERED)
-def test_a_wrong_program_is_told_the_same_without_the_references(
-    exercise_id: str, step: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_wrong_program_is_told_the_same_without_the_references(exercise_id, step, monkeypatch):
     beside = _told(exercise_id, step)
     monkeypatch.setattr(type(content()), "solution_folder", lambda _, __: None)
     assert kit.reference(exercise_id, "formulas") is None

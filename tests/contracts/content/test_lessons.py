@@ -1,7 +1,5 @@
 """The commands of every lesson do what they say. What else a lesson must have is the audit's."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -16,7 +14,7 @@ CATALOG = Catalog(content())
 
 
 @pytest.mark.parametrize("lesson_id", CATALOG.lesson_ids())
-def test_every_command_to_try_works_in_a_fresh_workspace(lesson_id: str) -> None:
+def test_every_command_to_try_works_in_a_fresh_workspace(lesson_id):
     blocks = b.walk_blocks(read_blocks(Path(CATALOG.lesson(lesson_id).path)))
     lists = [block for block in blocks if isinstance(block, b.CommandList)]
     commands = [command.command for block in lists for command in block.commands]
@@ -24,7 +22,7 @@ def test_every_command_to_try_works_in_a_fresh_workspace(lesson_id: str) -> None
     assert refused(commands) == {}
 
 
-def test_a_command_that_fails_is_named_with_what_it_said() -> None:
+def test_a_command_that_fails_is_named_with_what_it_said():
     assert refused(["course lessons", "course quizz", "ls", "course check integrators"]) == {
         1: "No such command 'quizz'. Did you mean 'quiz'?",
         2: "ls: it is no command of the course",

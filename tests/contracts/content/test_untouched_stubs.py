@@ -1,7 +1,5 @@
 """A stub that nobody has touched is work to do, whatever its functions return; a touched one is judged."""
 
-from __future__ import annotations
-
 import pytest
 
 from course.catalog.load import Catalog
@@ -13,7 +11,7 @@ CATALOG = Catalog()
 
 
 @pytest.mark.parametrize("name", CATALOG.exercise_ids())
-def test_nothing_of_an_untouched_stub_fails(name: str) -> None:
+def test_nothing_of_an_untouched_stub_fails(name):
     exercise = CATALOG.exercise(name)
     files = {exercise.module: exercise.stub_path.read_bytes()}
     with GradingSession(exercise, CATALOG, scope="public", terms=Terms(home=True)) as session:
@@ -23,7 +21,7 @@ def test_nothing_of_an_untouched_stub_fails(name: str) -> None:
     assert verdict.score == 0.0
 
 
-def test_a_function_is_judged_once_it_or_what_it_uses_has_changed() -> None:
+def test_a_function_is_judged_once_it_or_what_it_uses_has_changed():
     exercise = CATALOG.exercise("collisions")
     stub = exercise.stub_path.read_text("utf-8")
     touched = stub.replace("int(t_end / h)", "round(t_end / h)", 1)

@@ -1,9 +1,6 @@
 """Every wrong program that a warm-up knows of fails a check and is told one of its own mistakes."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -33,12 +30,12 @@ AS_TRUE = {
 
 
 @pytest.fixture(scope="module")
-def catalog() -> Catalog:
+def catalog():
     return Catalog()
 
 
 @pytest.mark.parametrize("warm_up", Catalog().warm_up_ids())
-def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog: Catalog, warm_up: str) -> None:
+def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog, warm_up):
     exercise = catalog.exercise(warm_up)
     checks = CollectedChecks(check_files(exercise, catalog, "public"), draws=False)
     model = (solutions_folder(catalog, exercise) / exercise.module).read_text(encoding="utf-8")
@@ -46,7 +43,7 @@ def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog: Cata
     assert table is not None
     assert questions is not None
     for task, codes, function in hypotheses_of(catalog, exercise):
-        submission: Any = LocalSubmission(model, replaced={task: function})
+        submission = LocalSubmission(model, replaced={task: function})
         outcomes = [checks.run(check, submission) for check in checks.in_order() if check.task == task]
         assert any(outcomes), f"no check fails for {codes}"
         numbers = sums_of(questions, task, function)

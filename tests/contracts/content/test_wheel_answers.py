@@ -6,19 +6,14 @@ submission; files of the same exercise find each other. In a grading run each of
 so does a program that looks the fixed inputs of the public checks up in the table that is shipped.
 """
 
-from __future__ import annotations
-
 import ast
 import itertools
 import types
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise
 from course.scoring import kit
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
@@ -86,29 +81,29 @@ def loaded(name):
 class Stripped(ast.NodeTransformer):
     """Imports of the course's become ``Nothing``, ``kit`` a helper that finds files of the same exercise."""
 
-    def _bound(self, names: list[ast.alias]) -> list[ast.stmt]:
+    def _bound(self, names):
         text = "\n".join(
             f"{name.asname or name.name.split('.')[0]} = {'Kit' if name.name == 'kit' else 'Nothing'}()"
             for name in names
         )
         return ast.parse(text).body
 
-    def visit_ImportFrom(self, node: ast.ImportFrom) -> Any:
+    def visit_ImportFrom(self, node):
         if node.module == "__future__":
             return None
         ours = (node.module or "").split(".")[0] in {"course", "pytest", "pymunk"}
         return self._bound(node.names) if ours else node
 
-    def visit_Import(self, node: ast.Import) -> Any:
+    def visit_Import(self, node):
         ours = any(name.name.split(".")[0] in {"course", "pytest", "pymunk"} for name in node.names)
         return self._bound(node.names) if ours else node
 
 
-def shipped(exercise: Exercise) -> list[Path]:
+def shipped(exercise):
     return sorted(exercise.readme_path.parent.glob("*.py"))
 
 
-def handed_in(exercise: Exercise) -> str:
+def handed_in(exercise):
     """The files of an exercise in one module, ``FILES`` by name."""
     future = "from __future__ import annotations\n"
     files = {
@@ -173,7 +168,7 @@ def nth(name, wanted, module, how, number):
 '''
 
 
-def submission(exercise: Exercise, module: str, how: str, number: int) -> str:
+def submission(exercise, module, how, number):
     """The module of an exercise with each task bound to the ``number``-th thing of a file meant for it."""
     lines = [handed_in(exercise), FOUND]
     for task in exercise.task:
@@ -184,7 +179,7 @@ def submission(exercise: Exercise, module: str, how: str, number: int) -> str:
     return "\n".join(lines)
 
 
-def _parameters(exercise: Exercise, task: str) -> list[str]:
+def _parameters(exercise, task):
     tree = ast.parse(exercise.stub_path.read_text("utf-8"))
     node = next(node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == task)
     return [arg.arg for arg in node.args.args]
@@ -194,7 +189,7 @@ def _parameters(exercise: Exercise, task: str) -> list[str]:
 MOST = 40
 
 
-def scores(session: GradingSession, how: str) -> Iterator[tuple[str, int, float, list[str]]]:
+def scores(session, how):
     """File, number of the choice, points, and the checks that passed.
 
     A task's checks are run where the choice is one that the task has not had: files load each other, so that
@@ -205,7 +200,7 @@ def scores(session: GradingSession, how: str) -> Iterator[tuple[str, int, float,
     for path in shipped(exercise):
         if path.name == exercise.module:
             continue
-        namespace: dict[str, Any] = {"__name__": "handed_in"}
+        namespace = {"__name__": "handed_in"}
         exec(compile(submission(exercise, path.stem, how, 0), "handed_in", "exec"), namespace)
         new = dict[int, set[str]]()
         for task in exercise.task:
@@ -223,7 +218,7 @@ def scores(session: GradingSession, how: str) -> Iterator[tuple[str, int, float,
             yield path.name, number, verdict.score, passed
 
 
-def _known_by(candidate: object) -> object:
+def _known_by(candidate):
     """What two things that do the same have in common; a number of its own where that cannot be told."""
     if not isinstance(candidate, types.FunctionType):
         return id(candidate)
@@ -238,14 +233,14 @@ HOW = ["named", pytest.param("fitting", marks=pytest.mark.soak)]
 
 @pytest.mark.parametrize("how", HOW)
 @pytest.mark.parametrize("exercise", CATALOG.exercises(), ids=lambda exercise: exercise.id)
-def test_no_shipped_file_scores_a_point(exercise: Exercise, how: str) -> None:
+def test_no_shipped_file_scores_a_point(exercise, how):
     with GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=20.0)) as session:
         found = [(file, points, passed) for file, _, points, passed in scores(session, how) if points > 0]
     assert not found
 
 
 @pytest.mark.parametrize("how", HOW)
-def test_no_shipped_file_of_a_warm_up_passes_one_of_its_checks(how: str) -> None:
+def test_no_shipped_file_of_a_warm_up_passes_one_of_its_checks(how):
     found = {}
     for warm_up in CATALOG.warm_ups():
         assert {path.suffix for path in Path(warm_up.folder).iterdir()} <= {
@@ -262,10 +257,10 @@ def test_no_shipped_file_of_a_warm_up_passes_one_of_its_checks(how: str) -> None
 
 
 @pytest.mark.parametrize("exercise_id", ["collisions"])
-def test_the_shipped_answers_to_fixed_inputs_score_nothing_in_a_grading_run(exercise_id: str) -> None:
+def test_the_shipped_answers_to_fixed_inputs_score_nothing_in_a_grading_run(exercise_id):
     exercise = CATALOG.exercise(exercise_id)
     questions = kit.companion(exercise_id, "questions")
-    known: dict[str, list[tuple[str, str]]] = {}
+    known = {}
     for check, task in questions.TASKS.items():
         if not task.startswith("simulate"):
             for args, answer in zip(

@@ -1,7 +1,5 @@
 """A copy of the miniature course to break, and a grader that answers without running anything."""
 
-from __future__ import annotations
-
 import contextlib
 import shutil
 from collections.abc import Callable, Iterator, Sequence

@@ -1,22 +1,15 @@
 """What the audit finds by reading."""
 
-from __future__ import annotations
-
 import re
 import shutil
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import Any
 
 import msgspec
 import pytest
 
 from course.authoring.audit import audit
 from course.authoring.exercises.grading import mistakes_of
-from course.authoring.report import AuditReport, AuthorProblem
 from course.catalog.load import Catalog
 from course.errors import ContentError
-from course.scoring.verdict import Verdict
 from tests.unit.authoring.conftest import edit, line_of
 
 TOML = "exercises/doubling/exercise.toml"
@@ -132,16 +125,7 @@ OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
         (MISTAKES, '"x * x"', "\"__import__('scipy')\"", None, "", ""),
     ],
 )
-def test_each_fault_is_found_at_its_line(
-    mini: Path,
-    run: Callable[..., AuditReport],
-    file: str,
-    old: str,
-    new: str,
-    at: str | None,
-    code: str,
-    says: str,
-) -> None:
+def test_each_fault_is_found_at_its_line(mini, run, file, old, new, at, code, says):
     """One fault is planted; ``at`` is a text on the line to blame, None where there is none to look for."""
     edit(mini / file, old, new)
     report = run()
@@ -168,30 +152,24 @@ def test_each_fault_is_found_at_its_line(
         (SYLLABUS, "content", "missing"),
     ],
 )
-def test_a_missing_file_is_named(
-    mini: Path, run: Callable[..., AuditReport], file: str, code: str, says: str
-) -> None:
+def test_a_missing_file_is_named(mini, run, file, code, says):
     (mini / file).unlink()
     found = [p.message for p in run().problems if (p.file, p.code) == (file, code)]
     assert len(found) == 1 or code == "mutants"
     assert any(says in message for message in found)
 
 
-def test_an_exercise_folder_without_an_exercise_is_named(
-    mini: Path, only_problem: Callable[[], AuthorProblem]
-) -> None:
+def test_an_exercise_folder_without_an_exercise_is_named(mini, only_problem):
     (mini / "exercises" / "thirds").mkdir()
     assert only_problem().file == "exercises/thirds/exercise.toml"
 
 
-def test_an_exercise_nobody_accepts_variants_of_is_named(
-    mini: Path, only_problem: Callable[[], AuthorProblem]
-) -> None:
+def test_an_exercise_nobody_accepts_variants_of_is_named(mini, only_problem):
     shutil.rmtree(mini / "solutions" / "halving" / "accepted")
     assert "accepted variants: 0, and an exercise of this size has at least 2" in only_problem().message
 
 
-def drop(path: Path, *texts: str) -> None:
+def drop(path, *texts):
     """Take the mistakes of an exercise out that hold one of the texts."""
     head, *entries = path.read_text().split("\nmistakes(")
     kept = [entry for entry in entries if not any(text in entry for text in texts)]
@@ -199,7 +177,7 @@ def drop(path: Path, *texts: str) -> None:
     path.write_text("\nmistakes(".join([head, *kept]))
 
 
-def test_an_exercise_with_few_mutants_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
+def test_an_exercise_with_few_mutants_is_named(mini, run):
     drop(mini / "solutions" / "halving" / "mistakes.py", "round(")
     few, stale = run().problems
     assert few.file == "solutions/halving/mistakes.py"
@@ -208,15 +186,13 @@ def test_an_exercise_with_few_mutants_is_named(mini: Path, run: Callable[..., Au
     assert stale.help == "Run `course author build halving --accept`, and read what it says."
 
 
-def test_one_diagnosis_for_every_mistake_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
+def test_one_diagnosis_for_every_mistake_is_named(mini, run):
     path = mini / MISTAKES
     path.write_text(re.sub(r'mistakes\("\w+"\)', 'mistakes("WRONG")', path.read_text()))
     assert "tell no mistakes apart" in " ".join(p.message for p in run().problems if p.file == MISTAKES)
 
 
-def test_what_ruff_says_is_said_by_the_rules_of_the_course(
-    mini: Path, run: Callable[..., AuditReport]
-) -> None:
+def test_what_ruff_says_is_said_by_the_rules_of_the_course(mini, run):
     path = mini / CHECKS
     path.write_text(path.read_text().replace("import pytest\n", "import os\nimport pytest\nx  =  1\n"))
     assert run("doubling").ok
@@ -232,7 +208,7 @@ def test_what_ruff_says_is_said_by_the_rules_of_the_course(
     assert {(p.where, p.code, p.help) for p in run().problems} == found
 
 
-def test_a_task_that_no_mutant_breaks_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
+def test_a_task_that_no_mutant_breaks_is_named(mini, run):
     path = mini / MISTAKES
     drop(path, '"doublings"')
     with path.open("a") as file:  # others of the other task, so that there are enough
@@ -248,9 +224,7 @@ def test_a_task_that_no_mutant_breaks_is_named(mini: Path, run: Callable[..., Au
         ('"""Odd."""\nfrom __future__ import annotations\n', 2, "not valid Python"),
     ],
 )
-def test_a_variant_that_cannot_follow_the_solution_is_named(
-    mini: Path, run: Callable[..., AuditReport], text: str, line: int, says: str
-) -> None:
+def test_a_variant_that_cannot_follow_the_solution_is_named(mini, run, text, line, says):
     path = mini / "solutions" / "doubling" / "accepted" / "adds.py"
     path.write_text(text)
     (problem,) = [p for p in run().problems if p.file == "solutions/doubling/accepted/adds.py"]
@@ -258,11 +232,7 @@ def test_a_variant_that_cannot_follow_the_solution_is_named(
     assert says in problem.message
 
 
-def test_checks_without_markers_are_not_graded(
-    mini: Path,
-    oracle,
-    run: Callable[..., AuditReport],  # type: ignore[no-untyped-def]
-) -> None:
+def test_checks_without_markers_are_not_graded(mini, oracle, run):
     edit(mini / CHECKS, "@pytest.mark.points(2)\n", "")
     assert not run().ok
     accepted = (path.name for path in (mini / "solutions" / "halving").glob("accepted/*.py"))
@@ -271,7 +241,7 @@ def test_checks_without_markers_are_not_graded(
     assert set(oracle.graded) == {"stub", "solution", *accepted, *wrong}
 
 
-def test_one_exercise_or_lesson_can_be_audited_alone(mini: Path, run: Callable[..., AuditReport]) -> None:
+def test_one_exercise_or_lesson_can_be_audited_alone(mini, run):
     edit(mini / TOML, "points = 4", "points = 5")
     exercise, lesson = run("halving"), run("twice-as-much")
     assert (exercise.ok, exercise.lessons, exercise.exercises) == (True, (), ("halving",))
@@ -287,9 +257,7 @@ exercises = ["doubling"]
 """
 
 
-def test_what_belongs_to_no_objective_is_named_where_it_would_be_added(
-    mini: Path, run: Callable[..., AuditReport]
-) -> None:
+def test_what_belongs_to_no_objective_is_named_where_it_would_be_added(mini, run):
     syllabus = mini / SYLLABUS
     syllabus.write_text(syllabus.read_text() + OBJECTIVE)
     (problem,) = run("halving").problems
@@ -299,13 +267,10 @@ def test_what_belongs_to_no_objective_is_named_where_it_would_be_added(
         syllabus.read_text().replace('["doubling"]', '["doubling", "halving", "halving", "no"]')
     )
     found = [p.message for p in run().problems if p.code == "syllabus"]
-    assert found == [
-        "halving belongs to an objective above already.",
-        "there is no no among the exercises.",
-    ]
+    assert found == ["halving belongs to an objective above already.", "there is no no among the exercises."]
 
 
-def test_a_course_with_objectives_has_whole_lessons(mini: Path, run: Callable[..., AuditReport]) -> None:
+def test_a_course_with_objectives_has_whole_lessons(mini, run):
     syllabus = mini / SYLLABUS
     syllabus.write_text(syllabus.read_text() + OBJECTIVE)
     said = [p.message for p in run("half-as-much").problems]
@@ -313,9 +278,7 @@ def test_a_course_with_objectives_has_whole_lessons(mini: Path, run: Callable[..
     assert "a lesson has at least 2 warm-ups, and half-as-much has fewer." in said
 
 
-def test_minutes_that_do_not_fit_the_text_of_a_lesson_are_named(
-    mini: Path, run: Callable[..., AuditReport]
-) -> None:
+def test_minutes_that_do_not_fit_the_text_of_a_lesson_are_named(mini, run):
     syllabus, lesson = mini / SYLLABUS, mini / "lessons" / "half-as-much.md"
     syllabus.write_text(syllabus.read_text() + OBJECTIVE)
     asked = "\n> **Predict.** What is half of six? Of seven?\n\n> **Answer.** Three.\n"
@@ -328,12 +291,12 @@ def test_minutes_that_do_not_fit_the_text_of_a_lesson_are_named(
     assert not [p for p in run("half-as-much").problems if "minutes" in p.message]
 
 
-def test_a_command_of_a_lesson_that_fails_is_named(mini: Path) -> None:
+def test_a_command_of_a_lesson_that_fails_is_named(mini):
     lesson = mini / LESSON
     lesson.write_text(lesson.read_text() + "\n```console\n$ course lessons\n$ course lesson no\n```\n")
-    tried: list[list[str]] = []
+    tried = []
 
-    def refused(commands: Sequence[str]) -> dict[int, str]:
+    def refused(commands):
         tried.append([*commands])
         return {1: "There is no lesson called 'no'."}
 
@@ -343,9 +306,7 @@ def test_a_command_of_a_lesson_that_fails_is_named(mini: Path) -> None:
     assert problem.message == "`course lesson no` fails in a fresh workspace: There is no lesson called 'no'."
 
 
-def test_two_exercises_that_share_a_number_or_a_file_are_named(
-    mini: Path, run: Callable[..., AuditReport]
-) -> None:
+def test_two_exercises_that_share_a_number_or_a_file_are_named(mini, run):
     for name in ("doubling", "halving"):
         path = mini / f"exercises/{name}/exercise.toml"
         text = re.sub(r"^number = .*\n", "", path.read_text(), flags=re.MULTILINE)
@@ -358,17 +319,15 @@ def test_two_exercises_that_share_a_number_or_a_file_are_named(
     assert "exercise doubling has the module doubling.py too." in [p.message for p in run("halving").problems]
 
 
-def test_an_exercise_and_a_warm_up_of_one_id_are_refused_by_every_command(mini: Path) -> None:
+def test_an_exercise_and_a_warm_up_of_one_id_are_refused_by_every_command(mini):
     shutil.copytree(mini / "exercises/doubling", mini / "exercises/warm-ups/doubling")
     with pytest.raises(ContentError, match=r"warm-ups/doubling: an exercise has this id, too"):
         Catalog().exercise("doubling")
     assert [p.message for p in audit(Catalog()).problems] == ["an exercise has this id, too."]
 
 
-def test_what_a_handout_is_told_is_declared_and_what_is_declared_is_told(
-    mini: Path, oracle: Any, run: Callable[..., AuditReport]
-) -> None:
-    def told(verdict: Verdict) -> Verdict:
+def test_what_a_handout_is_told_is_declared_and_what_is_declared_is_told(mini, oracle, run):
+    def told(verdict):
         checks = tuple(
             msgspec.structs.replace(check, diagnosis="DOUBLES" if check.id == "double_of_three" else None)
             for check in verdict.checks

@@ -1,9 +1,5 @@
 """The audit with the real grader: a few faults that only running the code can show."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 from course.authoring.audit import audit
 from course.authoring.exercises.grading import grade_sources
 from course.authoring.exercises.proofs import run_mutants
@@ -11,14 +7,14 @@ from course.catalog.load import Catalog
 from tests.unit.authoring.conftest import edit
 
 
-def test_a_stub_that_already_works_is_found(mini: Path) -> None:
+def test_a_stub_that_already_works_is_found(mini):
     edit(mini / "exercises/halving/halving.py", "raise NotImplementedError", "return x / 2")
     found = [p for p in audit(Catalog(), "halving").problems if p.code == "stub"]
     assert any("the untouched stub passes check half_of_odd" in p.message for p in found)
     assert any("no check of task halve fails" in p.message for p in found)
 
 
-def test_a_stub_that_cannot_be_loaded_is_found(mini: Path) -> None:
+def test_a_stub_that_cannot_be_loaded_is_found(mini):
     edit(
         mini / "exercises/halving/halving.py", "def halve", "import absent\nx = len(absent.x)\n\n\ndef halve"
     )
@@ -26,14 +22,14 @@ def test_a_stub_that_cannot_be_loaded_is_found(mini: Path) -> None:
     assert any("left out. It uses a package that is not there." in message for message in found)
 
 
-def test_a_check_that_breaks_is_not_the_solutions_fault(mini: Path) -> None:
+def test_a_check_that_breaks_is_not_the_solutions_fault(mini):
     edit(mini / "graders/halving/checks.py", "3.5,", "3.5 / 0,")
     problems = audit(Catalog(), "halving").problems
     assert {p.code for p in problems} == {"grader"}
     assert any("ZeroDivisionError" in p.message for p in problems)
 
 
-def test_the_words_of_a_hidden_check_are_read_as_a_student_gets_them(mini: Path) -> None:
+def test_the_words_of_a_hidden_check_are_read_as_a_student_gets_them(mini):
     edit(
         mini / "graders/halving/checks.py",
         'message="Half of an odd number has lost its fraction."',
@@ -44,9 +40,9 @@ def test_the_words_of_a_hidden_check_are_read_as_a_student_gets_them(mini: Path)
     assert {p.where for p in problems} == {"graders/halving/checks.py:10"}
 
 
-def test_what_each_mutant_gets_to_read_can_be_listed(mini: Path) -> None:
+def test_what_each_mutant_gets_to_read_can_be_listed(mini):
     catalog = Catalog()
-    steps: list[int] = []
+    steps = []
     outcomes = run_mutants(
         catalog, catalog.exercise("doubling"), on_progress=lambda done, *_: steps.append(done)
     )
@@ -60,7 +56,7 @@ def test_what_each_mutant_gets_to_read_can_be_listed(mini: Path) -> None:
     assert steps == [*range(9)]
 
 
-def test_a_field_that_no_failed_check_has_is_a_problem(mini: Path) -> None:
+def test_a_field_that_no_failed_check_has_is_a_problem(mini):
     path = mini / "exercises/doubling/exercise.toml"
     edit(path, "[task.fits]", '[task.yours]\n2 = ["At {x} it is {got}.", "At {y} too."]\n\n[task.fits]')
     (problem,) = audit(Catalog(), "doubling").problems
@@ -71,7 +67,7 @@ def test_a_field_that_no_failed_check_has_is_a_problem(mini: Path) -> None:
     assert (some.problems, some.graded) == ((), 13)
 
 
-def test_checks_that_cannot_be_collected_are_a_problem_like_any_other(mini: Path) -> None:
+def test_checks_that_cannot_be_collected_are_a_problem_like_any_other(mini):
     edit(
         mini / "exercises/halving/checks.py",
         "import pytest\n",
@@ -82,7 +78,7 @@ def test_checks_that_cannot_be_collected_are_a_problem_like_any_other(mini: Path
     assert "nothing_of_that_name" in problems[0].message
 
 
-def test_a_marker_may_be_computed(mini: Path) -> None:
+def test_a_marker_may_be_computed(mini):
     edit(mini / "graders/halving/checks.py", 'task("halve")', "task(TASK)")
     edit(mini / "graders/halving/checks.py", "points(1)", "points(3 - 2)")
     edit(

@@ -1,16 +1,11 @@
 """What the audit finds by grading; the grader here answers from a script."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import msgspec
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.report import AuditReport, AuthorProblem
 from course.catalog.load import Catalog
 from course.scoring.verdict import OURS, Problem, Status, Verdict
 
@@ -23,8 +18,8 @@ MISTAKES = "solutions/doubling/mistakes.py"
 Change = Callable[[Verdict], Verdict]
 
 
-def with_check(check_id: str, **fields: Any) -> Change:
-    def change(verdict: Verdict) -> Verdict:
+def with_check(check_id, **fields):
+    def change(verdict):
         checks = tuple(
             msgspec.structs.replace(check, **fields) if check.id == check_id else check
             for check in verdict.checks
@@ -34,7 +29,7 @@ def with_check(check_id: str, **fields: Any) -> Change:
     return change
 
 
-def ending(state: str, message: str) -> Change:
+def ending(state, message):
     return lambda verdict: msgspec.structs.replace(
         verdict, state=state, checks=(), score=0.0, error=Problem("code", message, "Do this.")
     )
@@ -44,16 +39,16 @@ passing = {"status": Status.PASS, "diagnosis": None}
 failing = {"status": Status.FAIL, "points": 0.0}
 
 
-def squares(change: Change, says: str) -> tuple[str, Change, str, str, str]:
+def squares(change, says):
     """What is said of a mutant at its line."""
     return "double.SQUARES_INSTEAD", change, f"{MISTAKES}:7", "mutant", says
 
 
-def without_the_first(verdict: Verdict) -> Verdict:
+def without_the_first(verdict):
     return msgspec.structs.replace(verdict, checks=verdict.checks[1:])
 
 
-def with_one_more(verdict: Verdict) -> Verdict:
+def with_one_more(verdict):
     more = msgspec.structs.replace(verdict.checks[0], id="made_by_a_loop")
     return msgspec.structs.replace(verdict, checks=(*verdict.checks, more))
 
@@ -110,8 +105,7 @@ def with_one_more(verdict: Verdict) -> Verdict:
         ),
         squares(with_check("double_of_three", points=2.0), "loses no points"),
         squares(
-            ending("ungradable", "Syntax."),
-            "mutant double.SQUARES_INSTEAD could not be graded: Syntax.",
+            ending("ungradable", "Syntax."), "mutant double.SQUARES_INSTEAD could not be graded: Syntax."
         ),
         (
             "double.SQUARES_INSTEAD",
@@ -136,9 +130,7 @@ def with_one_more(verdict: Verdict) -> Verdict:
         ),
     ],
 )
-def test_a_verdict_that_should_be_another_is_reported(
-    oracle: Any, run: Callable[..., AuditReport], name: str, change: Change, where: str, code: str, says: str
-) -> None:
+def test_a_verdict_that_should_be_another_is_reported(oracle, run, name, change, where, code, says):
     oracle.changes[name] = change
     problems = run().problems
     found = [p for p in problems if (p.where, p.code) == (where, code)]
@@ -147,10 +139,8 @@ def test_a_verdict_that_should_be_another_is_reported(
     assert found[0].help
 
 
-def test_a_line_that_breaks_several_checks_is_named_once(
-    oracle: Any, only_problem: Callable[[], AuthorProblem]
-) -> None:
-    def broken(verdict: Verdict) -> Verdict:
+def test_a_line_that_breaks_several_checks_is_named_once(oracle, only_problem):
+    def broken(verdict):
         said = f"{OURS}KeyError: there are no words for SQUARE ({HIDDEN}, line 4)"
         for check in ("double_of_three", "double_of_negative"):
             verdict = with_check(check, traceback=said)(verdict)
@@ -160,10 +150,8 @@ def test_a_line_that_breaks_several_checks_is_named_once(
     assert "as `mistakes.py` has it" in only_problem().help
 
 
-def test_a_mutant_caught_only_by_another_check_is_reported(
-    oracle: Any, only_problem: Callable[[], AuthorProblem]
-) -> None:
-    def by_the_other(verdict: Verdict) -> Verdict:
+def test_a_mutant_caught_only_by_another_check_is_reported(oracle, only_problem):
+    def by_the_other(verdict):
         verdict = with_check("double_of_three", **passing, points=2.0)(verdict)
         return with_check("double_of_negative", status=Status.FAIL, points=0.0)(verdict)
 
@@ -172,9 +160,7 @@ def test_a_mutant_caught_only_by_another_check_is_reported(
 
 
 @pytest.mark.parametrize(("told", "accepted"), [("SIGN_LOST", True), (None, True), ("STARTS_LATE", False)])
-def test_a_mutant_may_be_told_what_else_is_true_of_it(
-    mini: Path, oracle: Any, run: Callable[..., AuditReport], told: str | None, accepted: bool
-) -> None:
+def test_a_mutant_may_be_told_what_else_is_true_of_it(mini, oracle, run, told, accepted):
     path = mini / MISTAKES
     path.write_text(path.read_text().replace('"x * x"})', '"x * x"}, also=("SIGN_LOST", ""))', 1))
     oracle.changes["double.SQUARES_INSTEAD"] = with_check("double_of_three", diagnosis=told)
@@ -185,9 +171,7 @@ def test_a_mutant_may_be_told_what_else_is_true_of_it(
 @pytest.mark.parametrize(
     ("check", "says"), [("no_such", "there is no such check"), ("doublings_length", "belongs to task")]
 )
-def test_a_mutant_is_on_record_with_a_check_of_its_task(
-    mini: Path, oracle: Any, run: Callable[..., AuditReport], check: str, says: str
-) -> None:
+def test_a_mutant_is_on_record_with_a_check_of_its_task(mini, oracle, run, check, says):
     path = mini / "solutions/doubling/record.json"
     path.write_text(path.read_text().replace(':"double_of_three"', f':"{check}"'))
     oracle.changes["double.SQUARES_INSTEAD"] = with_check("double_of_three", status=Status.FAIL, points=0.0)
@@ -204,9 +188,7 @@ def test_a_mutant_is_on_record_with_a_check_of_its_task(
         ({"message": "There are 29 of them.", "input": {"n": [1, 29]}}, "29"),
     ],
 )
-def test_a_hidden_check_must_not_say_its_values(
-    oracle: Any, run: Callable[..., AuditReport], fields: dict[str, Any], number: str
-) -> None:
+def test_a_hidden_check_must_not_say_its_values(oracle, run, fields, number):
     oracle.changes["double.SIGN_LOST"] = with_check("double_of_negative", **fields)
     found = [p for p in run().problems if p.code == "leak"]
     assert [p.where for p in found] == [f"{HIDDEN}:12"]
@@ -221,16 +203,14 @@ def test_a_hidden_check_must_not_say_its_values(
         ("double_of_three", {"message": "It is not 34.5."}),
     ],
 )
-def test_small_numbers_and_public_checks_may_be_said(
-    oracle: Any, run: Callable[..., AuditReport], check: str, fields: dict[str, Any]
-) -> None:
+def test_small_numbers_and_public_checks_may_be_said(oracle, run, check, fields):
     name = "double.SIGN_LOST" if check == "double_of_negative" else "double.SQUARES_INSTEAD"
     oracle.changes[name] = with_check(check, **fields)
     assert run().ok
 
 
-def test_progress_counts_up_to_the_end(mini: Path, oracle: Any) -> None:
-    steps: list[tuple[int, int, str]] = []
+def test_progress_counts_up_to_the_end(mini, oracle):
+    steps = []
     report = audit(Catalog(), on_progress=lambda *step: steps.append(step), grade=oracle.grade)
     assert [done for done, _, _ in steps] == [*range(22), 22]
     assert {total for _, total, _ in steps} == {report.graded}

@@ -1,11 +1,8 @@
 """``course author`` as it is typed."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -17,13 +14,13 @@ from course.sandbox.scene.loading import FOLDER, scene_ids
 from tests.unit.authoring.conftest import edit
 
 
-def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[str, Any]]:
+def answer(capsys, *line):
     """Exit code and the one JSON object of a command."""
     code = run([*line, "--json"])
     return code, json.loads(capsys.readouterr().out)
 
 
-def test_a_right_course_exits_with_zero(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_right_course_exits_with_zero(mini, capsys):
     assert run(["author", "check"]) == 0
     scenes = len(scene_ids())
     counts = f"2 lessons, 2 exercises, 0 quiz questions, {scenes} scenes, 6 checks, 22 submissions graded"
@@ -34,7 +31,7 @@ HIDDEN = "the hidden checks come to 1, and 4 is written here."
 BUILD = "Run `course author build halving`."
 
 
-def test_a_problem_is_shown_with_place_and_fix(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_problem_is_shown_with_place_and_fix(mini, capsys):
     path = mini / "exercises" / "halving" / "exercise.toml"
     edit(path, "hidden_checks = 1", "hidden_checks = 4")
     assert run(["author", "check", "halving"]) == 1
@@ -55,9 +52,7 @@ def test_a_problem_is_shown_with_place_and_fix(mini: Path, capsys: pytest.Captur
     ]
 
 
-def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(
-    mini: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(mini, tmp_path, monkeypatch, capsys):
     text = (FOLDER / "head-on.toml").read_text("utf-8").replace("{speed}", "{sped}", 1)
     (tmp_path / "head-on.toml").write_text(text, "utf-8")
     monkeypatch.setattr("course.sandbox.scene.loading.FOLDER", tmp_path)
@@ -68,9 +63,7 @@ def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(
     assert "sped" in problem["message"]
 
 
-def test_a_new_scene_lies_in_its_course_and_is_checked_and_played_there(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_new_scene_lies_in_its_course_and_is_checked_and_played_there(mini, capsys):
     code, body = answer(capsys, "author", "new", "scene", "falling")
     assert (code, body["files"]) == (0, ["scenes/falling.toml"])
     assert not (FOLDER / "falling.toml").exists()
@@ -83,9 +76,7 @@ def test_a_new_scene_lies_in_its_course_and_is_checked_and_played_there(
     assert run(["author", "new", "scene", "falling"]) == run(["author", "new", "scene", "head-on"]) == 2
 
 
-def test_a_new_scene_lies_where_its_author_is_outside_of_the_checkout(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_new_scene_lies_where_its_author_is_outside_of_the_checkout(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     try:
         assert run(["author", "new", "scene", "falling"]) == 0
@@ -97,9 +88,7 @@ def test_a_new_scene_lies_where_its_author_is_outside_of_the_checkout(
     assert run(["sandbox", "play", "falling.toml", "--headless"]) == 0
 
 
-def test_a_scene_whose_run_gives_another_number_than_its_theory_is_named(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_scene_whose_run_gives_another_number_than_its_theory_is_named(mini, capsys):
     (mini / "scenes").mkdir()
     text = (FOLDER / "head-on.toml").read_text("utf-8").replace('id = "head-on"', 'id = "head-off"')
     wrong = re.sub(r"^theory = .*$", 'theory = "17"', text, flags=re.MULTILINE)
@@ -116,9 +105,7 @@ def test_a_scene_whose_run_gives_another_number_than_its_theory_is_named(
     assert problem["message"] == "theory gives 17 m/s, and the run 2."
 
 
-def test_a_scene_whose_words_leave_out_what_its_answer_depends_on_is_told_the_names_for_it(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_scene_whose_words_leave_out_what_its_answer_depends_on_is_told_the_names_for_it(mini, capsys):
     (mini / "scenes").mkdir()
     text = (FOLDER / "free-fall.toml").read_text("utf-8").replace('"free-fall"', '"fall"')
     plain = re.sub(r"^(question|why) = .*$", r'\1 = "How fast?"', text, flags=re.MULTILINE)
@@ -132,9 +119,7 @@ def test_a_scene_whose_words_leave_out_what_its_answer_depends_on_is_told_the_na
     assert told["restitution"] == "Write in one of them a formula in braces with stone.restitution."
 
 
-def test_a_scene_called_as_one_of_the_programs_own_is_named(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_scene_called_as_one_of_the_programs_own_is_named(mini, capsys):
     (mini / "scenes").mkdir()
     (mini / "scenes" / "head-on.toml").write_bytes((FOLDER / "head-on.toml").read_bytes())
     _, body = answer(capsys, "author", "check", "head-on")
@@ -143,9 +128,7 @@ def test_a_scene_called_as_one_of_the_programs_own_is_named(
     ]
 
 
-def test_in_another_checkout_than_the_programs_nothing_is_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_in_another_checkout_than_the_programs_nothing_is_written(tmp_path, monkeypatch, capsys):
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     other = tmp_path / "copy"
     for folder in ("course/authoring", "exercises/inside"):
@@ -156,14 +139,12 @@ def test_in_another_checkout_than_the_programs_nothing_is_written(
     assert f"In {other}, type `python -m course`" in body["error"]["help"]
 
 
-def test_nothing_is_left_of_content_that_could_not_be_written(
-    mini: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nothing_is_left_of_content_that_could_not_be_written(mini, monkeypatch):
     """Interrupted half-way: what is there would be in the way of the next attempt."""
     before = {path for path in mini.rglob("*") if path.is_file()}
     opened, times = Path.open, iter(range(5))
 
-    def interrupted(path: Path, *args: Any, **more: Any) -> Any:
+    def interrupted(path, *args, **more):
         if "x" in args and next(times) == 4:
             raise KeyboardInterrupt
         return opened(path, *args, **more)
@@ -174,9 +155,7 @@ def test_nothing_is_left_of_content_that_could_not_be_written(
     assert {path for path in mini.rglob("*") if path.is_file()} == before
 
 
-def test_mutants_are_listed_and_one_that_survives_exits_with_one(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_mutants_are_listed_and_one_that_survives_exits_with_one(mini, capsys):
     code, body = answer(capsys, "author", "mutants")
     assert (code, body["schema"], len(body["mutants"])) == (0, "course.author-mutants/1", 12)
     assert body["mutants"][0]["diagnosis"] == "SQUARES_INSTEAD"
@@ -189,9 +168,7 @@ def test_mutants_are_listed_and_one_that_survives_exits_with_one(
     assert "4 mutants: 1 not caught" in out
 
 
-def test_what_follows_from_an_exercise_is_written_and_named(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_follows_from_an_exercise_is_written_and_named(mini, capsys):
     path = mini / "exercises" / "halving" / "exercise.toml"
     right = path.read_text()
     path.write_text(right.replace("hidden_checks = 1", "hidden_checks = 4"))
@@ -213,9 +190,7 @@ def test_what_follows_from_an_exercise_is_written_and_named(
         ),
     ],
 )
-def test_what_is_new_is_written_and_listed(
-    mini: Path, capsys: pytest.CaptureFixture[str], line: list[str], kind: str, file: str
-) -> None:
+def test_what_is_new_is_written_and_listed(mini, capsys, line, kind, file):
     code, body = answer(capsys, "author", "new", *line)
     assert (code, body["schema"], body["kind"]) == (0, "course.author-new/1", kind)
     assert file in body["files"]
@@ -224,9 +199,7 @@ def test_what_is_new_is_written_and_listed(
     assert "nothing is overwritten" in capsys.readouterr().err
 
 
-def test_a_new_lesson_says_in_which_course_it_is_and_where_to_list_it(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_new_lesson_says_in_which_course_it_is_and_where_to_list_it(mini, capsys):
     assert run(["author", "new", "lesson", "three-times"]) == 0
     out = capsys.readouterr().out
     assert f"Wrote lesson three-times in {mini}." in " ".join(out.split())
@@ -234,9 +207,7 @@ def test_a_new_lesson_says_in_which_course_it_is_and_where_to_list_it(
     assert (mini / "lessons" / "three-times.md").is_file()
 
 
-def test_a_pack_holds_the_solutions_and_their_prose(
-    mini: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_pack_holds_the_solutions_and_their_prose(mini, tmp_path, capsys):
     output = tmp_path / "s.coursepack"
     line = ["author", "pack", "--solutions", "doubling", "halving", "doubling", "-o", str(output)]
     code, body = answer(capsys, *line)
@@ -263,15 +234,7 @@ def test_a_pack_holds_the_solutions_and_their_prose(
         (["author", "pack", "--solutions", "halving", "-o", "x"], 70, "content"),
     ],
 )
-def test_a_wrong_line_has_its_exit_code(
-    mini: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    line: list[str],
-    code: int,
-    name: str,
-) -> None:
+def test_a_wrong_line_has_its_exit_code(mini, tmp_path, monkeypatch, capsys, line, code, name):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine").write_bytes(b"mine")
     (mini / "solutions/halving/halving.py").unlink()
@@ -282,9 +245,7 @@ def test_a_wrong_line_has_its_exit_code(
 
 
 @pytest.mark.parametrize("folder", ["solutions", "graders"])
-def test_a_student_is_told_that_it_needs_a_checkout(
-    mini: Path, capsys: pytest.CaptureFixture[str], folder: str
-) -> None:
+def test_a_student_is_told_that_it_needs_a_checkout(mini, capsys, folder):
     (mini / folder).rename(mini / "gone")
     for line in (
         ["check"],
@@ -298,7 +259,7 @@ def test_a_student_is_told_that_it_needs_a_checkout(
         assert "checkout" in body["error"]["help"]
 
 
-def test_every_author_command_has_a_help_page_with_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_author_command_has_a_help_page_with_an_example(capsys):
     for line in (
         ["check"],
         ["mutants"],

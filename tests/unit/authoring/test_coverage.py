@@ -1,14 +1,11 @@
 """The table of where the course has what: it finds what is missing, and the page says what the table says."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
 import pytest
 
 from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
-from course.authoring.report import AuthorProblem
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.cli.author.commands import is_command
@@ -32,7 +29,7 @@ parts = [
 
 
 @pytest.fixture
-def table(mini: Path) -> Path:
+def table(mini):
     """A table of the miniature course that has nothing wrong with it."""
     catalog = Catalog(content())
     path = mini / "docs" / "coverage.toml"
@@ -42,7 +39,7 @@ def table(mini: Path) -> Path:
     return path
 
 
-def problems(path: Path, old: str = "", new: str = "") -> tuple[AuthorProblem, ...]:
+def problems(path, old="", new=""):
     """What is wrong with the table after a change of it."""
     text = path.read_text(encoding="utf-8")
     assert old in text
@@ -51,7 +48,7 @@ def problems(path: Path, old: str = "", new: str = "") -> tuple[AuthorProblem, .
     return check_coverage(read_coverage(catalog), catalog, is_command)
 
 
-def test_a_table_whose_places_all_exist_is_right(table: Path) -> None:
+def test_a_table_whose_places_all_exist_is_right(table):
     assert not problems(table)
 
 
@@ -89,13 +86,13 @@ def test_what_is_wrong_is_said_with_its_line(table: Path, old: str, new: str, sa
         assert problem.help
 
 
-def test_a_kind_that_there_is_not_is_said(table: Path) -> None:
+def test_a_kind_that_there_is_not_is_said(table):
     (found,) = problems(table, 'kind = "heading"', 'kind = "chapter"')
     assert "no kind 'chapter'" in found.message
     assert found.line
 
 
-def test_lines_of_the_chapter_that_belong_to_no_part_are_counted(table: Path) -> None:
+def test_lines_of_the_chapter_that_belong_to_no_part_are_counted(table):
     (found,) = problems(table, "source_lines = 7", "source_lines = 10")
     assert "3 lines of the chapter belong to no part: 8, 9, 10." in found.message
 
@@ -114,23 +111,21 @@ def test_lines_of_the_chapter_that_belong_to_no_part_are_counted(table: Path) ->
         (("reflect", "none"), False),
     ],
 )
-def test_commands_are_known_with_their_groups(words: tuple[str, ...], there: bool) -> None:
+def test_commands_are_known_with_their_groups(words, there):
     assert is_command(words) is there
 
 
-def test_a_course_without_a_table_says_where_to_look(mini: Path) -> None:
+def test_a_course_without_a_table_says_where_to_look(mini):
     with pytest.raises(NotFoundError, match=r"coverage\.toml"):
         read_coverage(Catalog(content()))
 
 
-def test_an_unknown_key_is_refused_with_its_line(table: Path) -> None:
+def test_an_unknown_key_is_refused_with_its_line(table):
     with pytest.raises(ContentError, match=r"coverage\.toml:2"):
         problems(table, "source_lines", "lines")
 
 
-def test_the_command_writes_the_page_and_answers_in_json(
-    table: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_writes_the_page_and_answers_in_json(table, capsys):
     assert run(["author", "coverage", "--write", "--json"]) == 0
     body = json.loads(capsys.readouterr().out)
     assert (body["schema"], body["ok"], body["written"]) == (
@@ -147,9 +142,7 @@ def test_the_command_writes_the_page_and_answers_in_json(
     assert body["parts"][1]["kind"] == "heading"
 
 
-def test_a_table_with_a_gap_exits_with_one_and_writes_nothing(
-    table: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_table_with_a_gap_exits_with_one_and_writes_nothing(table, capsys):
     table.write_text(table.read_text().replace("source_lines = 7", "source_lines = 8"))
     assert run(["author", "coverage", "--write"]) == 1
     assert "4 parts, 8 lines: 1 problem." in capsys.readouterr().out

@@ -1,15 +1,12 @@
 """An exercise with words beside its wrong programs, as its author builds it."""
 
-from __future__ import annotations
-
 import json
 import shutil
-from pathlib import Path
 
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises.grading import GradeSources, grade_sources
+from course.authoring.exercises.grading import grade_sources
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.scoring.explain.story import read_table
@@ -19,12 +16,12 @@ WORDS = '"INTEGER_DIVISION", "The fraction is lost.", "Use / and not //."'
 
 
 @pytest.fixture
-def halving(mini: Path) -> Path:
+def halving(mini):
     """Its folder for students; its mistake has words, and there are questions."""
     return with_words(mini)
 
 
-def with_words(mini: Path) -> Path:
+def with_words(mini):
     folder = mini / "exercises" / "halving"
     (folder / "questions.py").write_text(
         '"""Q."""\n\nQUESTIONS = {"halve": [(7,), (-3,), (0.5,), (-8.0,)]}\n'
@@ -34,7 +31,7 @@ def with_words(mini: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def accepted_once(tmp_path_factory: pytest.TempPathFactory, sandboxes: None) -> Path:
+def accepted_once(tmp_path_factory, sandboxes):
     """A course in which that is built and accepted."""
     course = shutil.copytree(MINI, tmp_path_factory.mktemp("accepted") / "mini")
     with pytest.MonkeyPatch.context() as patch:
@@ -45,25 +42,25 @@ def accepted_once(tmp_path_factory: pytest.TempPathFactory, sandboxes: None) -> 
 
 
 @pytest.fixture
-def accepted(accepted_once: Path, mini: Path) -> Path:
+def accepted(accepted_once, mini):
     """The folder for students of a copy of it."""
     shutil.copytree(accepted_once, mini, dirs_exist_ok=True)
     forget()
     return mini / "exercises" / "halving"
 
 
-def mistakes(mini: Path) -> Path:
+def mistakes(mini):
     return mini / "solutions" / "halving" / "mistakes.py"
 
 
-def problems(grade: GradeSources = lambda _: ()) -> list[str]:
+def problems(grade=lambda _: ()):
     """What the audit says by reading alone, unless something grades."""
     forget()
     found = audit(Catalog(), "halving", grade=grade).problems
     return [f"{one.where}: {one.message} {one.help}" for one in found]
 
 
-def test_what_an_author_writes_is_built_and_right(halving: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_an_author_writes_is_built_and_right(halving, capsys):
     assert run(["author", "build", "halving", "--accept"]) == 0
     out = capsys.readouterr().out
     assert "Wrote exercises/halving/diagnoses.json" in out
@@ -74,9 +71,7 @@ def test_what_an_author_writes_is_built_and_right(halving: Path, capsys: pytest.
     assert "up to date" in capsys.readouterr().out
 
 
-def test_a_mistake_that_never_ends_is_named_and_prints_nothing(
-    halving: Path, mini: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_mistake_that_never_ends_is_named_and_prints_nothing(halving, mini, monkeypatch, capsys):
     monkeypatch.setattr("course.authoring.exercises.diagnosis._PATIENCE", 0.5)
     loops = 'mistakes("LOOPS", "It loops.", "End it.").body("halve", "print(1)\\nwhile True: pass")'
     with mistakes(mini).open("a") as file:
@@ -89,12 +84,12 @@ def test_a_mistake_that_never_ends_is_named_and_prints_nothing(
         assert "\n1\n" not in told
 
 
-def test_a_question_that_nobody_can_be_asked_is_named(halving: Path) -> None:
+def test_a_question_that_nobody_can_be_asked_is_named(halving):
     edit(halving / "questions.py", "(-3,)", "(-3, 4)")
     assert any("question 2 of halve cannot be asked: too many" in one for one in problems())
 
 
-def test_a_probe_that_was_loaded_before_knows_a_code_that_is_new(halving: Path, mini: Path) -> None:
+def test_a_probe_that_was_loaded_before_knows_a_code_that_is_new(halving, mini):
     """One command loads it with the questions, then writes the words, then grades with both."""
     questions, hidden = halving / "questions.py", mini / "graders" / "halving" / "checks.py"
     edit(questions, '"""Q."""', 'from course.scoring import kit\n\nNAMED = kit.words("halving")')
@@ -105,20 +100,17 @@ def test_a_probe_that_was_loaded_before_knows_a_code_that_is_new(halving: Path, 
     assert record["rows"]["alone"] == [["halve", ["INTEGER_DIVISION"], "INTEGER_DIVISION", 4]]
 
 
-def test_other_words_ask_for_a_build_and_for_no_other_record(accepted: Path, mini: Path) -> None:
+def test_other_words_ask_for_a_build_and_for_no_other_record(accepted, mini):
     edit(mistakes(mini), "Use / and not //.", "Divide with a single stroke.")
     (stale,) = problems()
     assert stale.startswith("exercises/halving/diagnoses.json: it was made from other questions, mistakes or")
     assert run(["author", "build", "halving"]) == 0
     assert problems() == []
     table = read_table(accepted)
-    assert table is not None
     assert table.words["INTEGER_DIVISION"].advice == "Divide with a single stroke."
 
 
-def test_a_program_that_lost_its_check_or_its_name_is_printed_before_it_is_accepted(
-    accepted: Path, mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_program_that_lost_its_check_or_its_name_is_printed_before_it_is_accepted(accepted, mini, capsys):
     record = mini / "solutions/halving/record.json"
     kept = json.loads(record.read_text())
     kept["caught"]["halve.INTEGER_DIVISION"] = "an_older_check"
@@ -138,9 +130,7 @@ def test_a_program_that_lost_its_check_or_its_name_is_printed_before_it_is_accep
     assert [one for one in problems(grade_sources) if "not as INTEGER_DIVISION" not in one] == []
 
 
-def test_what_is_lost_with_a_check_is_printed(
-    accepted: Path, mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_lost_with_a_check_is_printed(accepted, mini, capsys):
     """A check names a mistake no longer, no question tells it apart, and a program has become right."""
     edit(mini / "graders/halving/checks.py", '        diagnose="INTEGER_DIVISION",\n', "")
     edit(accepted / "questions.py", "(7,), (-3,), (0.5,), (-8.0,)", "(8,)")
@@ -152,7 +142,7 @@ def test_what_is_lost_with_a_check_is_printed(
     assert "halve: INTEGER_DIVISION is no longer named." in out
 
 
-def test_a_record_that_is_missing_damaged_or_of_other_programs_is_named(accepted: Path, mini: Path) -> None:
+def test_a_record_that_is_missing_damaged_or_of_other_programs_is_named(accepted, mini):
     record, again = mini / "solutions/halving/record.json", "Run `course author build halving --accept`"
     kept = record.read_bytes()
     record.unlink()
@@ -181,8 +171,8 @@ def test_a_record_that_is_missing_damaged_or_of_other_programs_is_named(accepted
     ],
 )
 def test_mistakes_that_cannot_be_used_are_named_and_nothing_is_left_half_made(
-    halving: Path, mini: Path, capsys: pytest.CaptureFixture[str], text: str, line: int | None, says: str
-) -> None:
+    halving, mini, capsys, text, line, says
+):
     path = mistakes(mini)
     path.write_text(f"{path.read_text()}\n{text}")
     before = path.with_name("record.json").read_bytes()
@@ -197,9 +187,7 @@ def test_mistakes_that_cannot_be_used_are_named_and_nothing_is_left_half_made(
     assert says in found[0], "before the advice to build what cannot be built"
 
 
-def test_questions_and_programs_that_raise_are_named(
-    halving: Path, mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_questions_and_programs_that_raise_are_named(halving, mini, capsys):
     edit(halving / "questions.py", "QUESTIONS", "1 / 0\nQUESTIONS")
     assert run(["author", "build", "halving"]) == 70
     assert "questions.py:3: it raises ZeroDivisionError" in capsys.readouterr().err
@@ -211,7 +199,7 @@ def test_questions_and_programs_that_raise_are_named(
     assert "mistakes.py:11: it raises ZeroDivisionError" in capsys.readouterr().err
 
 
-def test_what_is_out_of_date_comes_after_what_it_follows_from(accepted: Path, mini: Path) -> None:
+def test_what_is_out_of_date_comes_after_what_it_follows_from(accepted, mini):
     shutil.copy(accepted / "halving.py", mini / "solutions/halving/accepted/unfinished.py")
     (accepted / "README.md").write_text("# Halving\n")
     found = problems()

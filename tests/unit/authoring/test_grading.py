@@ -1,10 +1,5 @@
 """Variants of a model solution are graded by the checks that can tell them from it, and to the same end."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Iterator
-from pathlib import Path
-
 import msgspec
 import pytest
 
@@ -17,11 +12,9 @@ from course.authoring.exercises.grading import (
     source_of,
 )
 from course.catalog.load import Catalog
-from course.grading.intake.students import Entry
-from course.grading.running.batch import Graded, Graders
+from course.grading.running.batch import Graders
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
-from course.scoring.verdict import Verdict
 
 #: What may come after a model solution, and the checks of "doubling" that see it.
 AFTER = {
@@ -36,13 +29,13 @@ AFTER = {
 }
 
 
-def plain(verdict: Verdict) -> Verdict:
+def plain(verdict):
     """A verdict without what differs from run to run."""
     checks = tuple(msgspec.structs.replace(check, duration_ms=0.0) for check in verdict.checks)
     return msgspec.structs.replace(verdict, checks=checks)
 
 
-def test_every_source_gets_the_verdict_of_all_checks(mini: Path) -> None:
+def test_every_source_gets_the_verdict_of_all_checks(mini):
     catalog = Catalog()
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise)
@@ -58,13 +51,13 @@ def test_every_source_gets_the_verdict_of_all_checks(mini: Path) -> None:
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
+def asked(monkeypatch):
     """The checks that each grading is to run; none stands for all."""
-    seen: list[tuple[str, ...]] = []
+    seen = []
     grade = Graders.grade
 
-    def watched(self: Graders, entries: Iterable[Entry]) -> Iterator[Graded]:
-        def noted() -> Iterator[Entry]:
+    def watched(self, entries):
+        def noted():
             for entry in entries:
                 seen.append(entry.only)
                 yield entry
@@ -75,7 +68,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
     return seen
 
 
-def test_a_check_that_cannot_see_a_change_is_not_run_again(mini: Path, asked: list[tuple[str, ...]]) -> None:
+def test_a_check_that_cannot_see_a_change_is_not_run_again(mini, asked):
     catalog = Catalog()
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise).read_text("utf-8").rstrip()
@@ -112,9 +105,7 @@ def test_doublings_again(submission):
 '''
 
 
-def test_a_check_of_what_another_one_kept_is_run_for_that_functions_changes(
-    mini: Path, asked: list[tuple[str, ...]]
-) -> None:
+def test_a_check_of_what_another_one_kept_is_run_for_that_functions_changes(mini, asked):
     with (mini / "graders" / "doubling" / "checks.py").open("a", encoding="utf-8") as file:
         file.write(KEPT)
     toml = mini / "exercises" / "doubling" / "exercise.toml"

@@ -1,9 +1,6 @@
 """Points and counts of an exercise follow from its checks."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import pytest
 
@@ -15,7 +12,7 @@ from course.errors import ContentError
 TOML = "exercises/doubling/exercise.toml"
 
 
-def built(mini: Path) -> str:
+def built(mini):
     written = write_points(Catalog(), Catalog().exercise("doubling"))
     assert written == mini / TOML
     return written.read_text()
@@ -29,7 +26,7 @@ def built(mini: Path) -> str:
         ("hidden_points = 5", "hidden_points = 2.5"),
     ],
 )
-def test_a_number_that_is_old_is_written_anew(mini: Path, old: str, new: str) -> None:
+def test_a_number_that_is_old_is_written_anew(mini, old, new):
     path = mini / TOML
     right = path.read_text()
     path.write_text(right.replace(old, new + "  # why"))
@@ -37,14 +34,14 @@ def test_a_number_that_is_old_is_written_anew(mini: Path, old: str, new: str) ->
     assert write_points(Catalog(), Catalog().exercise("doubling")) is None
 
 
-def test_counts_that_were_left_out_are_put_above_the_tasks(mini: Path) -> None:
+def test_counts_that_were_left_out_are_put_above_the_tasks(mini):
     path = mini / TOML
     right = path.read_text()
     path.write_text(re.sub(r"hidden_\w+ = .*\n", "", right))
     assert built(mini) == right
 
 
-def test_a_marker_that_changes_changes_the_points_of_its_task(mini: Path) -> None:
+def test_a_marker_that_changes_changes_the_points_of_its_task(mini):
     checks = mini / "graders" / "doubling" / "checks.py"
     checks.write_text(checks.read_text().replace("points(3)", "points(3.1)"))
     text = built(mini)
@@ -53,7 +50,7 @@ def test_a_marker_that_changes_changes_the_points_of_its_task(mini: Path) -> Non
     assert Catalog().exercise("doubling").max_points == pytest.approx(10.1, rel=1e-12)
 
 
-def test_a_task_without_points_keeps_what_is_written(mini: Path) -> None:
+def test_a_task_without_points_keeps_what_is_written(mini):
     """Zero could not be loaded again; the audit says what is missing."""
     for folder in ("exercises", "graders"):
         path = mini / folder / "doubling" / "checks.py"
@@ -61,12 +58,10 @@ def test_a_task_without_points_keeps_what_is_written(mini: Path) -> None:
     assert re.findall(r"^points = (.*)", built(mini), re.MULTILINE) == ["10", "6"]
 
 
-def test_times_are_measured_once_and_again_when_a_check_changes(
-    mini: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_times_are_measured_once_and_again_when_a_check_changes(mini, monkeypatch):
     """They are noise: another run of the same files changes nothing, least of all of other exercises."""
 
-    def build(seconds: float) -> dict[str, dict[str, float]] | None:
+    def build(seconds):
         monkeypatch.setattr(files, "measured", lambda *_: {"a": seconds, "b": 0.02})
         catalog = Catalog()
         if files.write_times(catalog, catalog.exercises()) is None:
@@ -81,21 +76,21 @@ def test_times_are_measured_once_and_again_when_a_check_changes(
     assert build(9.0) is None
 
 
-def test_a_time_in_exercise_toml_moves_where_it_is_kept(mini: Path) -> None:
+def test_a_time_in_exercise_toml_moves_where_it_is_kept(mini):
     path = mini / TOML
     right = path.read_text()
     path.write_text(right.replace("order = 1", "order = 1\nslow = { double_of_three = 0.2 }"))
     assert built(mini) == right
 
 
-def test_times_that_cannot_be_read_name_their_file_and_the_fix(mini: Path) -> None:
+def test_times_that_cannot_be_read_name_their_file_and_the_fix(mini):
     (mini / "exercises" / "times.json").write_text("{")
     with pytest.raises(ContentError, match=r"times\.json: what was measured cannot be read") as caught:
         Catalog().exercise("doubling")
     assert "course author build" in caught.value.help
 
 
-def test_what_is_measured_is_the_cpu_time_of_right_solutions(mini: Path) -> None:
+def test_what_is_measured_is_the_cpu_time_of_right_solutions(mini):
     most = files.measured(Catalog(), Catalog().exercise("doubling"))
     assert most.keys() == {"double_of_three", "doublings_length"}
     assert all(0 <= seconds < files.QUICK for seconds in most.values())

@@ -1,15 +1,9 @@
 """New exercises and lessons: blanks, then a course that passes its audit."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from pathlib import Path
-
 import pytest
 
 from course.authoring.audit import audit
 from course.authoring.exercises import diagnosis
-from course.authoring.report import AuditReport
 from course.authoring.scaffold import Function, new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
 from course.catalog.reading import BLANK
@@ -53,7 +47,7 @@ CODE = {
 }
 
 
-def fill(mini: Path) -> None:
+def fill(mini):
     """Fill every blank as an author would, and list the exercise in its lesson."""
     for name, words in SOLVED.items():
         path, left = mini / name, list(words)
@@ -72,13 +66,11 @@ def fill(mini: Path) -> None:
     lesson.write_text(lesson.read_text().replace('["halving"]', '["halving", "tripling"]'))
 
 
-def contents(folder: Path) -> dict[str, bytes]:
+def contents(folder):
     return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(
-    mini: Path, run: Callable[..., AuditReport]
-) -> None:
+def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(mini, run):
     new_exercise(Catalog(), "tripling")
     fill(mini)
     (nothing,) = audit(Catalog(), "tripling", grade=lambda _: ()).problems
@@ -94,7 +86,7 @@ def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(
     assert Catalog().exercise("tripling").order == 3
 
 
-def test_a_question_that_raises_is_named_with_its_line(mini: Path) -> None:
+def test_a_question_that_raises_is_named_with_its_line(mini):
     new_exercise(Catalog(), "tripling")
     fill(mini)
     solution = mini / "solutions" / "tripling" / "tripling.py"
@@ -106,7 +98,7 @@ def test_a_question_that_raises_is_named_with_its_line(mini: Path) -> None:
     assert "exercises/tripling/questions.py:3" in [one.where for one in problems], problems
 
 
-def test_the_audit_names_every_blank_with_its_line(mini: Path) -> None:
+def test_the_audit_names_every_blank_with_its_line(mini):
     files = new_exercise(Catalog(), "tripling")
     expected = {
         (str(path.relative_to(mini)), number)
@@ -121,13 +113,13 @@ def test_the_audit_names_every_blank_with_its_line(mini: Path) -> None:
     assert report.graded == 0
 
 
-def test_a_name_of_several_words_becomes_a_module(mini: Path) -> None:
+def test_a_name_of_several_words_becomes_a_module(mini):
     files = new_exercise(Catalog(), "three-times-as-much")
     assert mini / "exercises" / "three-times-as-much" / "three_times_as_much.py" in files
     assert Catalog().exercise("three-times-as-much").module == "three_times_as_much.py"
 
 
-def test_what_is_known_of_an_exercise_stands_in_every_file_and_is_no_blank(mini: Path) -> None:
+def test_what_is_known_of_an_exercise_stands_in_every_file_and_is_no_blank(mini):
     functions = [
         Function.parse("swing_period(length, gravity=9.81)", "gives the period of small swings, s."),
         Function.parse("swings(t)", "gives how often it swings in t."),
@@ -157,20 +149,16 @@ def test_what_is_known_of_an_exercise_stands_in_every_file_and_is_no_blank(mini:
 @pytest.mark.parametrize(
     "text", ["", "swing", "swing(", "swing()", "swing(*a)", "swing(a); import os", "a(b):\n x"]
 )
-def test_what_is_no_signature_is_refused(text: str) -> None:
+def test_what_is_no_signature_is_refused(text):
     with pytest.raises(UsageError, match="not a function"):
         Function.parse(text)
 
 
 @pytest.mark.parametrize(
     "taken",
-    [
-        "exercises/tripling/questions.py",
-        "solutions/tripling/mistakes.py",
-        "graders/tripling/checks.py",
-    ],
+    ["exercises/tripling/questions.py", "solutions/tripling/mistakes.py", "graders/tripling/checks.py"],
 )
-def test_nothing_is_overwritten_and_nothing_half_written(mini: Path, taken: str) -> None:
+def test_nothing_is_overwritten_and_nothing_half_written(mini, taken):
     (mini / taken).parent.mkdir(parents=True)
     (mini / taken).write_text("mine")
     before = contents(mini)
@@ -181,16 +169,14 @@ def test_nothing_is_overwritten_and_nothing_half_written(mini: Path, taken: str)
 
 
 @pytest.mark.parametrize("name", ["Tripling", "../x", "checks", "mistakes", "a_b", ""])
-def test_a_name_that_cannot_be_used_is_refused(mini: Path, name: str) -> None:
+def test_a_name_that_cannot_be_used_is_refused(mini, name):
     before = contents(mini)
     with pytest.raises(UsageError):
         new_exercise(Catalog(), name)
     assert contents(mini) == before
 
 
-def test_a_new_lesson_passes_once_it_is_filled_and_listed(
-    mini: Path, run: Callable[..., AuditReport]
-) -> None:
+def test_a_new_lesson_passes_once_it_is_filled_and_listed(mini, run):
     (path,) = new_lesson(Catalog(), "three-times")
     problems = run().problems
     assert {p.code for p in problems} == {"blank", "syllabus"}
@@ -207,7 +193,7 @@ def test_a_new_lesson_passes_once_it_is_filled_and_listed(
         new_lesson(Catalog(), "three-times")
 
 
-def test_a_new_question_passes_once_it_is_filled(mini: Path, run: Callable[..., AuditReport]) -> None:
+def test_a_new_question_passes_once_it_is_filled(mini, run):
     (path,) = new_question(Catalog(), "twice-or-square")
     blanks = [p for p in run().problems if p.code == "blank"]
     assert {p.file for p in blanks} == {"quiz/twice-or-square.toml"}

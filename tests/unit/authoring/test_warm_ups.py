@@ -1,11 +1,8 @@
 """Warm-ups: what the scaffold writes passes the audit once it is filled, and the audit misses nothing."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil
-from pathlib import Path
 
 import pytest
 
@@ -31,7 +28,7 @@ WRONG = {"DOUBLES": "2 * x", "ADDS_THREE": "3 + x", "CUBES": "x**3"}
 
 
 @pytest.fixture
-def tripling(mini: Path) -> Path:
+def tripling(mini):
     """A warm-up of the mini course with every blank filled, as an author would."""
     new_warm_up(Catalog(), "tripling", [Function.parse("triple(x)")], lesson="half-as-much")
     student, solutions = mini / "exercises/warm-ups/tripling", mini / "solutions/warm-ups/tripling"
@@ -56,30 +53,30 @@ def tripling(mini: Path) -> Path:
     return student
 
 
-def mistakes(mini: Path) -> Path:
+def mistakes(mini):
     return mini / "solutions/warm-ups/tripling/mistakes.py"
 
 
-def fill(path: Path, words: list[str]) -> None:
+def fill(path, words):
     text = path.read_text()
     for word in words:
         text = re.sub(r"<<FILL IN[^>]*>>", lambda _, word=word: word, text, count=1)
     path.write_text(text)
 
 
-def rebuilt() -> None:
+def rebuilt():
     catalog = Catalog()
     forget()
     build(catalog, catalog.exercise("tripling"))
     forget()
 
 
-def problems() -> list[str]:
+def problems():
     """What the audit says by reading alone."""
     return [one.message for one in audit(Catalog(), "tripling", grade=lambda _: ()).problems]
 
 
-def test_a_new_warm_up_passes_the_audit_once_its_blanks_are_filled(tripling: Path) -> None:
+def test_a_new_warm_up_passes_the_audit_once_its_blanks_are_filled(tripling):
     report = audit(Catalog(), "tripling")
     assert [f"{p.where} {p.message} {p.help}" for p in report.problems] == []
     assert report.graded == 2 + 2 + 3
@@ -96,21 +93,18 @@ def test_a_new_warm_up_passes_the_audit_once_its_blanks_are_filled(tripling: Pat
         ("README.md", "# Tripling", "Tripling", "the title is missing"),
     ],
 )
-def test_the_audit_sees_what_a_warm_up_lacks(
-    tripling: Path, file: str, old: str, new: str, said: str
-) -> None:
+def test_the_audit_sees_what_a_warm_up_lacks(tripling, file, old, new, said):
     edit(tripling / file, old, new)
     assert any(said in message for message in problems()), problems()
 
 
-def test_warm_ups_that_are_not_in_the_order_of_their_sections_are_named(mini: Path, tripling: Path) -> None:
+def test_warm_ups_that_are_not_in_the_order_of_their_sections_are_named(mini, tripling):
     lesson = mini / "lessons/half-as-much.md"
     lesson.write_text(lesson.read_text() + "\n## And on\n\nOnce more.\n")
     other = tripling.with_name("quadrupling")
     shutil.copytree(tripling, other)
     declared = (other / "exercise.toml").read_text().replace('"tripling"', '"quadrupling"')
     first = re.search(r"^order = (\d+)", declared, re.MULTILINE)
-    assert first is not None
     path = tripling / "exercise.toml"
     path.write_text(path.read_text().replace(first[0], "order = 9"))
     for section, wrong in (("and-on", True), ("the-way-back", False), ("", True)):
@@ -127,24 +121,20 @@ def test_warm_ups_that_are_not_in_the_order_of_their_sections_are_named(mini: Pa
         ('mistakes(\n    "CUBES"', "mutants: 2, and an exercise of this size has at least 3"),
     ],
 )
-def test_the_audit_counts_the_programs_of_a_warm_up(
-    tripling: Path, mini: Path, entry: str, said: str
-) -> None:
+def test_the_audit_counts_the_programs_of_a_warm_up(tripling, mini, entry, said):
     above, _, after = mistakes(mini).read_text().rpartition(entry)
     mistakes(mini).write_text(above + "".join(after.partition("\nmistakes")[1:]))
     rebuilt()
     assert any(said in message for message in problems())
 
 
-def test_a_stale_table_is_refused(tripling: Path) -> None:
+def test_a_stale_table_is_refused(tripling):
     path = tripling / "checks.py"
     path.write_text(path.read_text() + "\n#: Another thought.\n")
     assert any("made from other questions" in message for message in problems())
 
 
-def test_a_table_that_is_missing_is_named_and_made(
-    tripling: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_table_that_is_missing_is_named_and_made(tripling, capsys):
     table = table_path(tripling)
     before = table.read_bytes()
     table.unlink()
@@ -156,7 +146,7 @@ def test_a_table_that_is_missing_is_named_and_made(
     assert problems() == []
 
 
-def test_warm_ups_share_a_table_that_forgets_those_that_are_gone(tripling: Path) -> None:
+def test_warm_ups_share_a_table_that_forgets_those_that_are_gone(tripling):
     path = table_path(tripling)
     assert path == tripling.parent / "diagnoses.json"
     tables = json.loads(path.read_bytes())
@@ -171,7 +161,7 @@ def test_warm_ups_share_a_table_that_forgets_those_that_are_gone(tripling: Path)
     assert built["tripling"]["made_from"] != tables["tripling"]["made_from"]
 
 
-def test_questions_that_are_missing_are_named(tripling: Path) -> None:
+def test_questions_that_are_missing_are_named(tripling):
     edit(tripling / "checks.py", "QUESTIONS", "ANSWERS")
     assert ["what would tell wrong programs apart?" in message for message in problems()] == [True]
 
@@ -183,33 +173,33 @@ def test_questions_that_are_missing_are_named(tripling: Path) -> None:
         ('"triple", ("CUBED",)', "no words for CUBED"),
     ],
 )
-def test_a_hypothesis_that_fits_nothing_is_named(tripling: Path, mini: Path, program: str, said: str) -> None:
+def test_a_hypothesis_that_fits_nothing_is_named(tripling, mini, program, said):
     more = f"\n\n@mistakes.more\ndef others():\n    yield {program}, lambda x: x**3\n"
     mistakes(mini).write_text(mistakes(mini).read_text() + more)
     with pytest.raises(ContentError, match=said):
         rebuilt()
 
 
-def test_a_question_about_no_function_is_named(tripling: Path) -> None:
+def test_a_question_about_no_function_is_named(tripling):
     edit(tripling / "checks.py", '    "triple": [', '    "threefold": [')
     with pytest.raises(ContentError, match=r"checks\.py: 'threefold' is no function of the exercise"):
         rebuilt()
 
 
-def test_a_code_that_only_a_mutant_names_wants_another_question(tripling: Path) -> None:
+def test_a_code_that_only_a_mutant_names_wants_another_question(tripling):
     path = tripling / "checks.py"
     path.write_text(re.sub(r"(?s)QUESTIONS = .*", 'QUESTIONS = {"triple": [(0.0,)]}\n', path.read_text()))
     rebuilt()
     assert any("nothing gives the diagnosis CUBES" in message for message in problems()), problems()
 
 
-def test_what_is_true_of_one_run_is_no_cause(tripling: Path, mini: Path) -> None:
+def test_what_is_true_of_one_run_is_no_cause(tripling, mini):
     edit(mistakes(mini), "It is 2 * x.", "Here it is 2 * x.")
     rebuilt()
     assert problems() == ["DOUBLES is about one run, but as a cause it is said by every check of its task."]
 
 
-def test_a_table_is_the_same_whenever_it_is_built(tripling: Path, mini: Path) -> None:
+def test_a_table_is_the_same_whenever_it_is_built(tripling, mini):
     """A wrong program with chance of its own answers otherwise each time, so no answer is known of it."""
     edit(mistakes(mini), 'x**3"', "__import__('random').random()\"")
     built = []
@@ -218,17 +208,16 @@ def test_a_table_is_the_same_whenever_it_is_built(tripling: Path, mini: Path) ->
         built.append(table_path(tripling).read_bytes())
     assert built[0] == built[1]
     table = read_table(tripling)
-    assert table is not None
     assert {row.codes for row in table.rows["triple"]} == {("DOUBLES",), ("ADDS_THREE",)}
 
 
-def test_a_warm_up_lies_with_the_warm_ups(tripling: Path) -> None:
+def test_a_warm_up_lies_with_the_warm_ups(tripling):
     path = tripling / "exercise.toml"
     path.write_text(path.read_text().replace('kind = "warm-up"\n', ""))
     with pytest.raises(ContentError, match="`kind` is exercise, and the folder lies in warm-ups"):
         Catalog().exercise("tripling")
 
 
-def test_no_exercise_and_warm_up_share_an_id(mini: Path) -> None:
+def test_no_exercise_and_warm_up_share_an_id(mini):
     with pytest.raises(UsageError):
         new_warm_up(Catalog(), "halving", lesson="half-as-much")

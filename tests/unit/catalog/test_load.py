@@ -1,7 +1,5 @@
 """Reading course files, where they are found, and what is said when one is wrong."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -19,19 +17,19 @@ YOURS = "[task.yours]\n{}\n[task.fits]"
 VERSION = 'version = "0.1.0"'
 
 
-def edit(path: Path, old: str, new: str) -> None:
+def edit(path, old, new):
     """Replace the first ``old`` in a file; it must be there."""
     text = path.read_text(encoding="utf-8")
     assert old in text
     path.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
-def read_everything(catalog: Catalog) -> None:
+def read_everything(catalog):
     catalog.lessons()
     catalog.exercises()
 
 
-def refused(mini: Path, file: str) -> ContentError:
+def refused(mini, file):
     """The error that reading the broken course ends with; it must be about this file."""
     with pytest.raises(ContentError) as caught:
         read_everything(Catalog())
@@ -40,26 +38,26 @@ def refused(mini: Path, file: str) -> ContentError:
     return caught.value
 
 
-def test_a_course_without_a_version_has_the_packages(mini: Path) -> None:
+def test_a_course_without_a_version_has_the_packages(mini):
     from course import __version__
 
     edit(mini / SYLLABUS, 'version = "0.1.0"\n', "")
     assert Catalog().version == __version__
 
 
-def test_lessons_come_in_the_order_of_the_syllabus(catalog: Catalog, mini: Path) -> None:
+def test_lessons_come_in_the_order_of_the_syllabus(catalog, mini):
     assert [lesson.id for lesson in catalog.lessons()] == ["twice-as-much", "half-as-much"]
     assert catalog.lesson("half-as-much").before == ("twice-as-much",)
     assert Path(catalog.lesson("half-as-much").path) == mini.resolve() / LESSON
 
 
-def test_exercises_come_in_their_order(mini: Path) -> None:
+def test_exercises_come_in_their_order(mini):
     edit(mini / EXERCISE, "order = 1", "order = 9")
     assert [exercise.id for exercise in Catalog().exercises()] == ["halving", "doubling"]
 
 
-def test_listing_ids_opens_nothing_but_the_syllabus(mini: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    opened: list[str] = []
+def test_listing_ids_opens_nothing_but_the_syllabus(mini, monkeypatch):
+    opened = []
     real = Path.read_bytes
     monkeypatch.setattr(Path, "read_bytes", lambda self: opened.append(self.name) or real(self))
     catalog = Catalog()
@@ -69,7 +67,7 @@ def test_listing_ids_opens_nothing_but_the_syllabus(mini: Path, monkeypatch: pyt
     assert opened == ["syllabus.toml"]
 
 
-def test_a_file_is_read_once(catalog: Catalog, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_is_read_once(catalog, monkeypatch):
     read_everything(catalog)
     monkeypatch.setattr(Path, "read_bytes", lambda self: pytest.fail(f"{self} was read again"))
     read_everything(catalog)
@@ -85,9 +83,7 @@ def test_a_file_is_read_once(catalog: Catalog, monkeypatch: pytest.MonkeyPatch) 
         ("lesson", "twice", "Did you mean twice-as-much?"),
     ],
 )
-def test_an_unknown_id_is_answered_with_the_nearest(
-    catalog: Catalog, kind: str, wanted: str, advice: str
-) -> None:
+def test_an_unknown_id_is_answered_with_the_nearest(catalog, kind, wanted, advice):
     with pytest.raises(NotFoundError) as caught:
         getattr(catalog, kind)(wanted)
     assert caught.value.code == f"{kind}_not_found"
@@ -147,9 +143,7 @@ def test_an_unknown_id_is_answered_with_the_nearest(
         (SYLLABUS, VERSION, 'split = { half-as-much = "no" }', 4, "no is not in `lessons`", "listed there"),
     ],
 )
-def test_what_is_wrong_is_named_with_line_and_fix(
-    mini: Path, file: str, old: str, new: str, line: int, problem: str, fix: str
-) -> None:
+def test_what_is_wrong_is_named_with_line_and_fix(mini, file, old, new, line, problem, fix):
     edit(mini / file, old, new)
     error = refused(mini, file)
     assert problem in error.problem
@@ -157,12 +151,12 @@ def test_what_is_wrong_is_named_with_line_and_fix(
     assert error.line == line
 
 
-def test_a_lesson_without_a_file_is_named(mini: Path) -> None:
+def test_a_lesson_without_a_file_is_named(mini):
     (mini / LESSON).unlink()
     assert "missing" in refused(mini, LESSON).problem
 
 
-def test_a_folder_in_a_files_place_is_named(mini: Path) -> None:
+def test_a_folder_in_a_files_place_is_named(mini):
     (mini / SYLLABUS).unlink()
     (mini / SYLLABUS).mkdir()
     assert "cannot be read" in refused(mini, SYLLABUS).problem
@@ -177,31 +171,31 @@ def test_a_folder_in_a_files_place_is_named(mini: Path) -> None:
         ("format_version = 1\n".encode("utf-16"), 1, "not UTF-8"),
     ],
 )
-def test_an_odd_encoding_is_named(mini: Path, data: bytes, line: int, problem: str) -> None:
+def test_an_odd_encoding_is_named(mini, data, line, problem):
     (mini / EXERCISE).write_bytes(data)
     error = refused(mini, EXERCISE)
     assert problem in error.problem
     assert error.line == line
 
 
-def test_windows_line_ends_are_read(mini: Path) -> None:
+def test_windows_line_ends_are_read(mini):
     for file in (EXERCISE, LESSON):
         path = mini / file
         path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
     read_everything(Catalog())
 
 
-def test_a_folder_without_an_exercise_is_not_one(mini: Path) -> None:
+def test_a_folder_without_an_exercise_is_not_one(mini):
     (mini / "exercises" / "__pycache__").mkdir()
     assert Catalog().exercise_ids() == ("doubling", "halving")
 
 
-def _package(root: Path) -> Path:
+def _package(root):
     (root / "course" / "lessons").mkdir(parents=True)
     return root / "course"
 
 
-def test_an_unpacked_source_archive_is_a_students(tmp_path: Path) -> None:
+def test_an_unpacked_source_archive_is_a_students(tmp_path):
     package = _package(tmp_path)
     (tmp_path / "pyproject.toml").touch()
     (tmp_path / "exercises").mkdir()
@@ -210,7 +204,7 @@ def test_an_unpacked_source_archive_is_a_students(tmp_path: Path) -> None:
     assert found.solutions is None
 
 
-def test_a_wheel_reads_the_content_inside_the_package(tmp_path: Path) -> None:
+def test_a_wheel_reads_the_content_inside_the_package(tmp_path):
     package = _package(tmp_path)
     (package / "content" / "exercises").mkdir(parents=True)
     # What another package has put beside it is not ours.
@@ -224,13 +218,13 @@ def test_a_wheel_reads_the_content_inside_the_package(tmp_path: Path) -> None:
     assert found.graders is None
 
 
-def test_an_installation_without_content_says_so(tmp_path: Path) -> None:
+def test_an_installation_without_content_says_so(tmp_path):
     with pytest.raises(InternalError, match="exercises are missing"):
         locate._installed(_package(tmp_path))
 
 
 @pytest.mark.parametrize("missing", ["exercises", "lessons"])
-def test_a_selected_folder_that_is_no_course_is_refused(mini: Path, missing: str) -> None:
+def test_a_selected_folder_that_is_no_course_is_refused(mini, missing):
     (mini / missing).rename(mini / "gone")
     with pytest.raises(UsageError, match="holds no course") as caught:
         locate.content()

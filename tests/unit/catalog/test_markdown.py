@@ -1,7 +1,5 @@
 """Lessons: Markdown in, typed blocks out, everything else refused with its place."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -16,40 +14,40 @@ from course.errors import ContentError
 FILE = Path("a-lesson.md")
 
 
-def parse(text: str) -> tuple[b.Block, ...]:
+def parse(text):
     return parse_lesson(text, FILE)
 
 
-def only(text: str) -> b.Block:
+def only(text):
     blocks = parse(text)
     assert len(blocks) == 1
     return blocks[0]
 
 
-def test_front_matter_is_parted_from_the_text_and_the_line_of_the_text_is_known() -> None:
+def test_front_matter_is_parted_from_the_text_and_the_line_of_the_text_is_known():
     head = split_front_matter("+++\nid = 'a'\n+++\n\n## One\n", FILE)
     assert head == ("id = 'a'", "\n## One\n", 4)
 
 
 @pytest.mark.parametrize("text", ["", "## One\n", "+++\nid = 'a'\n"])
-def test_a_lesson_without_a_whole_front_matter_is_refused(text: str) -> None:
+def test_a_lesson_without_a_whole_front_matter_is_refused(text):
     with pytest.raises(ContentError, match=r"a-lesson\.md:1: the front matter"):
         split_front_matter(text, FILE)
 
 
-def test_a_file_that_is_not_utf8_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_not_utf8_is_refused(tmp_path):
     path = tmp_path / "latin.md"
     path.write_bytes("+++\n+++\nkäse".encode("latin-1"))
     with pytest.raises(ContentError, match=r"latin\.md:3: the file is not UTF-8 text"):
         read_blocks(path)
 
 
-def test_lines_are_those_of_the_file() -> None:
+def test_lines_are_those_of_the_file():
     blocks = parse_lesson("\nOne.\n\nTwo.\n", FILE, first_line=10)
     assert [block.line for block in blocks] == [11, 13]
 
 
-def test_a_line_of_prose_keeps_its_pieces() -> None:
+def test_a_line_of_prose_keeps_its_pieces():
     block = only("Some *soft* **loud** `code` $h\\omega$ and [words](https://a.org).")
     assert isinstance(block, b.Paragraph)
     assert block.inlines == (
@@ -68,7 +66,7 @@ def test_a_line_of_prose_keeps_its_pieces() -> None:
     assert b.plain_text(block.inlines) == "Some soft loud code hω and words."
 
 
-def test_lines_of_a_paragraph_are_joined_by_a_space() -> None:
+def test_lines_of_a_paragraph_are_joined_by_a_space():
     block = only("one\ntwo")
     assert isinstance(block, b.Paragraph)
     assert block.inlines == (b.Text("one two"),)
@@ -83,20 +81,20 @@ def test_lines_of_a_paragraph_are_joined_by_a_space() -> None:
         ("=100*x", "100*x"),
     ],
 )
-def test_a_link_to_an_expression_is_a_value(target: str, expression: str) -> None:
+def test_a_link_to_an_expression_is_a_value(target, expression):
     block = only(f"It is [0.0890]({target}) m.")
     assert isinstance(block, b.Paragraph)
     assert block.inlines[1] == b.Value("0.0890", expression, 1)
 
 
 @pytest.mark.parametrize("target", ["lesson:one", "exercise:one#a-heading", "#here", "https://a.org/b"])
-def test_links_inside_the_course_and_to_the_web_are_links(target: str) -> None:
+def test_links_inside_the_course_and_to_the_web_are_links(target):
     block = only(f"[words]({target})")
     assert isinstance(block, b.Paragraph)
     assert block.inlines == (b.Link(target, (b.Text("words"),), 1),)
 
 
-def test_lists_hold_blocks_and_numbered_ones_know_their_first_number() -> None:
+def test_lists_hold_blocks_and_numbered_ones_know_their_first_number():
     bullets, numbers = parse("- one\n- two\n  - deeper\n\ntext\n\n3. three\n")[::2]
     assert isinstance(bullets, b.ListBlock)
     assert bullets.start is None
@@ -105,7 +103,7 @@ def test_lists_hold_blocks_and_numbered_ones_know_their_first_number() -> None:
     assert numbers.start == 3
 
 
-def test_a_table_knows_its_header_rows_and_alignment() -> None:
+def test_a_table_knows_its_header_rows_and_alignment():
     table = only("| a | b |\n|:--|--:|\n| 1 | $x^2$ |\n")
     assert isinstance(table, b.Table)
     assert table.align == ("left", "right")
@@ -113,36 +111,36 @@ def test_a_table_knows_its_header_rows_and_alignment() -> None:
     assert table.rows == (((b.Text("1"),), (b.Formula("x^2", "x²", "x squared"),)),)
 
 
-def test_output_belongs_to_the_cell_above_it() -> None:
+def test_output_belongs_to_the_cell_above_it():
     cell = only("```python\nprint(4)\n```\n\n```output\n4\n```\n")
     assert cell == b.CodeCell(1, "print(4)", "4", output_line=5)
 
 
-def test_a_hidden_cell_is_marked() -> None:
+def test_a_hidden_cell_is_marked():
     cell = only("```python hidden\nx = 1\n```\n")
     assert isinstance(cell, b.CodeCell)
     assert cell.hidden
 
 
-def test_a_formula_on_its_own_takes_the_forms_its_author_gives() -> None:
+def test_a_formula_on_its_own_takes_the_forms_its_author_gives():
     given_forms = "$$\n\\oint x\n% text: around x\n% spoken: once round\n% spoken: and back\n$$\n"
     assert only(given_forms) == b.MathBlock(1, "\\oint x", "around x", "once round\nand back")
 
 
-def test_a_diagram_has_three_forms() -> None:
+def test_a_diagram_has_three_forms():
     text = "```mermaid\nflowchart LR\n  accDescr: A leads to B.\n  A --> B\n```\n\n```drawing\nA -> B\n```\n"
     diagram = only(text)
     assert isinstance(diagram, b.Diagram)
     assert (diagram.drawing, diagram.description) == ("A -> B", "A leads to B.")
 
 
-def test_a_figure_has_an_id_an_alternative_and_a_caption() -> None:
+def test_a_figure_has_an_id_an_alternative_and_a_caption():
     figure = only("![Two lines that cross at one](figure:lines)\nThey *cross*.\n")
     expected = (b.Text("They "), b.Span("emphasis", (b.Text("cross"),)), b.Text("."))
     assert figure == b.Figure(1, "lines", "Two lines that cross at one", expected)
 
 
-def test_a_quote_with_a_label_is_a_passage_with_a_role() -> None:
+def test_a_quote_with_a_label_is_a_passage_with_a_role():
     myth, question = parse("> **Myth.** All is well.\n\nText\n\n> **Predict:** What now?\n> - a\n> - b\n")[
         ::2
     ]
@@ -151,12 +149,12 @@ def test_a_quote_with_a_label_is_a_passage_with_a_role() -> None:
     assert isinstance(question.blocks[1], b.ListBlock)
 
 
-def test_commands_are_read_with_their_notes() -> None:
+def test_commands_are_read_with_their_notes():
     block = only("```console\n$ course check a  # why\n$ course lessons\n```\n")
     assert block == b.CommandList(1, (b.Command("course check a", "why"), b.Command("course lessons", "")))
 
 
-def test_the_list_under_sources_is_a_list_of_sources() -> None:
+def test_the_list_under_sources_is_a_list_of_sources():
     sources = parse("## Sources\n\n- A. Author, *Title*, 2003.\n")[1]
     assert isinstance(sources, b.Sources)
     assert b.plain_text(sources.items[0]) == "A. Author, Title, 2003."
@@ -192,7 +190,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("text", "problem"), REFUSED.items())
-def test_what_a_lesson_cannot_hold_is_refused_with_its_place(text: str, problem: str) -> None:
+def test_what_a_lesson_cannot_hold_is_refused_with_its_place(text, problem):
     with pytest.raises(ContentError) as caught:
         parse_lesson(f"First.\n\n{text}\n", FILE, first_line=20)
     assert problem in caught.value.problem
@@ -202,7 +200,7 @@ def test_what_a_lesson_cannot_hold_is_refused_with_its_place(text: str, problem:
 
 @settings(max_examples=200)
 @given(st.lists(st.sampled_from([*REFUSED, "", "text", "- item", "> **Fact.** x", "$$\nx\n$$", "+++"])))
-def test_any_text_gives_blocks_or_an_error_with_a_line(parts: list[str]) -> None:
+def test_any_text_gives_blocks_or_an_error_with_a_line(parts):
     try:
         lines = [block.line for block in b.walk_blocks(parse("\n\n".join(parts)))]
     except ContentError as error:
@@ -210,7 +208,7 @@ def test_any_text_gives_blocks_or_an_error_with_a_line(parts: list[str]) -> None
     assert all(line >= 1 for line in lines)
 
 
-def test_a_heading_is_an_anchor() -> None:
+def test_a_heading_is_an_anchor():
     heading = only("## Where the *energy* goes, $h\\omega$")
     assert isinstance(heading, b.Heading)
     assert b.slug(heading) == "where-the-energy-goes-hω"

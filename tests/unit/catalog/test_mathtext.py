@@ -1,7 +1,5 @@
 """Formulae as text and as words."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -32,7 +30,7 @@ from course.catalog.mathtext import MathError, math_spoken, math_text
         (r"x < -2", "x < −2"),
     ],
 )
-def test_a_formula_keeps_in_text_what_typesetting_says_by_position(tex: str, text: str) -> None:
+def test_a_formula_keeps_in_text_what_typesetting_says_by_position(tex, text):
     assert math_text(tex) == text
 
 
@@ -49,11 +47,11 @@ def test_a_formula_keeps_in_text_what_typesetting_says_by_position(tex: str, tex
         (r"\sum_i m_i", "the sum over i of m sub i"),
     ],
 )
-def test_a_formula_is_unambiguous_when_spoken(tex: str, spoken: str) -> None:
+def test_a_formula_is_unambiguous_when_spoken(tex, spoken):
     assert math_spoken(tex) == spoken
 
 
-def test_the_lines_of_an_aligned_formula_stay_lines_with_their_relations_in_one_column() -> None:
+def test_the_lines_of_an_aligned_formula_stay_lines_with_their_relations_in_one_column():
     tex = r"\begin{aligned} a &= b \\ a+a &= c \end{aligned}"
     assert [row.index("=") for row in math_text(tex).splitlines()] == [6, 6]
     assert math_spoken(tex) == "a equals b\na plus a equals c"
@@ -79,7 +77,7 @@ def test_the_lines_of_an_aligned_formula_stay_lines_with_their_relations_in_one_
         r"h/2\,v",
     ],
 )
-def test_what_the_converter_does_not_know_is_refused(tex: str) -> None:
+def test_what_the_converter_does_not_know_is_refused(tex):
     with pytest.raises(MathError):
         math_text(tex)
 
@@ -107,7 +105,7 @@ _PIECES = st.sampled_from(
 
 
 @given(st.lists(_PIECES, max_size=12).map(" ".join))
-def test_any_formula_gives_clean_text_or_is_refused(tex: str) -> None:
+def test_any_formula_gives_clean_text_or_is_refused(tex):
     try:
         text, spoken = math_text(tex), math_spoken(tex)
     except MathError:

@@ -1,7 +1,5 @@
 """Solution packs: the same bytes each time, and nothing believed that was not checked."""
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json
@@ -9,7 +7,6 @@ import stat
 import warnings
 import zipfile
 from pathlib import Path
-from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -22,25 +19,17 @@ FILE = "solutions/doubling/doubling.py"
 SOLUTIONS = {"doubling": {"doubling.py": b"def double(x):\n    return 2 * x\n", "README.md": b"Why.\n"}}
 
 
-def packed() -> bytes:
+def packed():
     return pack.pack_bytes("mini", "0.1.0", SOLUTIONS)
 
 
-def write(folder: Path, data: bytes) -> Path:
+def write(folder, data):
     path = folder / "s.coursepack"
     path.write_bytes(data)
     return path
 
 
-def forge(
-    folder: Path,
-    *,
-    entries: dict[str, bytes] | None = None,
-    manifest: Any = None,
-    mode: int = stat.S_IFREG | 0o644,
-    twice: bool = False,
-    **change: Any,
-) -> Path:
+def forge(folder, *, entries=None, manifest=None, mode=stat.S_IFREG | 0o644, twice=False, **change):
     """A pack put together by somebody else: a manifest that is true of the entries unless changed."""
     entries = {FILE: b"x = 1\n"} if entries is None else entries
     listed = [
@@ -68,7 +57,7 @@ def forge(
     return write(folder, buffer.getvalue())
 
 
-def test_the_same_solutions_give_the_same_bytes() -> None:
+def test_the_same_solutions_give_the_same_bytes():
     backwards = {name: dict(reversed(files.items())) for name, files in reversed(SOLUTIONS.items())}
     assert pack.pack_bytes("mini", "0.1.0", backwards) == packed()
     with zipfile.ZipFile(io.BytesIO(packed())) as archive:
@@ -77,7 +66,7 @@ def test_the_same_solutions_give_the_same_bytes() -> None:
     assert marks == {((1980, 1, 1, 0, 0, 0), 3, zipfile.ZIP_STORED)}
 
 
-def test_a_hand_made_pack_with_a_true_manifest_is_read(tmp_path: Path) -> None:
+def test_a_hand_made_pack_with_a_true_manifest_is_read(tmp_path):
     assert pack.read_pack(forge(tmp_path)).solutions == {"doubling": {"doubling.py": b"x = 1\n"}}
 
 
@@ -95,7 +84,7 @@ def test_a_hand_made_pack_with_a_true_manifest_is_read(tmp_path: Path) -> None:
         "C:x.py",
     ],
 )
-def test_a_name_that_is_no_plain_file_of_an_exercise_is_refused(tmp_path: Path, name: str) -> None:
+def test_a_name_that_is_no_plain_file_of_an_exercise_is_refused(tmp_path, name):
     with pytest.raises(IntegrityError):
         pack.read_pack(forge(tmp_path, entries={name: b"x = 1\n"}))
 
@@ -111,12 +100,12 @@ def test_a_name_that_is_no_plain_file_of_an_exercise_is_refused(tmp_path: Path, 
     ],
     ids=["twice", "link", "large", "many", "bomb"],
 )
-def test_an_archive_with_tricks_is_refused(tmp_path: Path, tricks: dict[str, Any], why: str) -> None:
+def test_an_archive_with_tricks_is_refused(tmp_path, tricks, why):
     with pytest.raises(IntegrityError, match=why):
         pack.read_pack(forge(tmp_path, **tricks))
 
 
-def test_an_entry_that_the_manifest_does_not_list_is_refused(tmp_path: Path) -> None:
+def test_an_entry_that_the_manifest_does_not_list_is_refused(tmp_path):
     with pytest.raises(IntegrityError, match="not the ones its manifest lists"):
         pack.read_pack(forge(tmp_path, files=[]))
 
@@ -133,26 +122,24 @@ def test_an_entry_that_the_manifest_does_not_list_is_refused(tmp_path: Path) -> 
         {"files": [{"path": FILE, "size": 6, "sha256": hashlib.sha256(b"x = 2\n").hexdigest()}]},
     ],
 )
-def test_a_manifest_that_does_not_fit_is_refused(tmp_path: Path, change: dict[str, Any]) -> None:
+def test_a_manifest_that_does_not_fit_is_refused(tmp_path, change):
     with pytest.raises(IntegrityError, match="is not a pack of solutions, or is damaged"):
         pack.read_pack(forge(tmp_path, **change))
 
 
-def test_a_pack_of_a_newer_format_asks_for_a_newer_course(tmp_path: Path) -> None:
+def test_a_pack_of_a_newer_format_asks_for_a_newer_course(tmp_path):
     path = forge(tmp_path, format_version=2, something_new=True)
     with pytest.raises(MissingCapabilityError, match="pack format 2"):
         pack.read_pack(path)
 
 
 @pytest.mark.parametrize("data", [b"", b"PK", b"not a zip at all", packed()[:-30], packed()[:100]])
-def test_a_file_that_is_no_whole_zip_is_refused(tmp_path: Path, data: bytes) -> None:
+def test_a_file_that_is_no_whole_zip_is_refused(tmp_path, data):
     with pytest.raises(IntegrityError):
         pack.read_pack(write(tmp_path, data))
 
 
-def test_a_file_too_large_to_be_a_pack_is_refused_unread(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_too_large_to_be_a_pack_is_refused_unread(tmp_path, monkeypatch):
     path = tmp_path / "s.coursepack"
     with path.open("wb") as file:
         file.truncate(50_000_000)
@@ -161,7 +148,7 @@ def test_a_file_too_large_to_be_a_pack_is_refused_unread(
         pack.read_pack(path)
 
 
-def test_a_pack_that_is_not_there_is_not_found(tmp_path: Path) -> None:
+def test_a_pack_that_is_not_there_is_not_found(tmp_path):
     with pytest.raises(NotFoundError):
         pack.read_pack(tmp_path / "none.coursepack")
     with pytest.raises(NotFoundError):
@@ -170,7 +157,7 @@ def test_a_pack_that_is_not_there_is_not_found(tmp_path: Path) -> None:
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.integers(0, len(packed()) - 1), st.integers(1, 255))
-def test_a_damaged_byte_is_noticed_or_changes_nothing(tmp_path: Path, position: int, flip: int) -> None:
+def test_a_damaged_byte_is_noticed_or_changes_nothing(tmp_path, position, flip):
     data = bytearray(packed())
     data[position] ^= flip
     try:
@@ -193,6 +180,6 @@ def test_a_damaged_byte_is_noticed_or_changes_nothing(tmp_path: Path, position: 
         {"doubling": {f"f{index}.py": b"0" * 900_000 for index in range(6)}},
     ],
 )
-def test_what_could_not_be_read_back_is_not_packed(solutions: dict[str, dict[str, bytes]]) -> None:
+def test_what_could_not_be_read_back_is_not_packed(solutions):
     with pytest.raises(UsageError):
         pack.pack_bytes("mini", "1", solutions)

@@ -1,10 +1,7 @@
 """Lines of values in TOML texts."""
 
-from __future__ import annotations
-
 import json
 import tomllib
-from typing import Any
 
 import pytest
 from hypothesis import given
@@ -69,21 +66,21 @@ points = 2
         (("task", 1, "part", 1, "more", "deep"), 30),
     ],
 )
-def test_each_value_is_found_on_its_line(path: tuple[str | int, ...], line: int) -> None:
+def test_each_value_is_found_on_its_line(path, line):
     assert LineMap(TEXT).line(path) == line
 
 
-def test_a_missing_value_is_placed_at_what_surrounds_it() -> None:
+def test_a_missing_value_is_placed_at_what_surrounds_it():
     lines = LineMap(TEXT)
     assert lines.line(("task", 1, "title")) == 22
     assert lines.line(("nothing", "at", "all")) == 1
 
 
-def test_lines_are_counted_from_where_the_text_starts_in_its_file() -> None:
+def test_lines_are_counted_from_where_the_text_starts_in_its_file():
     assert LineMap("a = 1\nb = 2\n", first_line=10).line(("b",)) == 11
 
 
-def test_windows_line_ends_count_once() -> None:
+def test_windows_line_ends_count_once():
     assert LineMap('a = """x\r\ny"""\r\nb = 2\r\n').line(("b",)) == 3
 
 
@@ -96,12 +93,12 @@ def test_windows_line_ends_count_once() -> None:
         ("$.table[...].x", ("table",)),
     ],
 )
-def test_paths_are_read_as_msgspec_writes_them(text: str, steps: tuple[str | int, ...]) -> None:
+def test_paths_are_read_as_msgspec_writes_them(text, steps):
     assert parse_path(text) == steps
 
 
 @pytest.mark.parametrize(("text", "line"), [("a = 1\nb = \nc = 3\n", 2), ("a = 1\nb = [1,\n", 2), ("= 1", 1)])
-def test_a_syntax_error_has_a_line(text: str, line: int) -> None:
+def test_a_syntax_error_has_a_line(text, line):
     with pytest.raises(tomllib.TOMLDecodeError) as caught:
         tomllib.loads(text)
     assert syntax_error_line(caught.value, text) == line
@@ -117,7 +114,7 @@ tables = st.lists(
 )
 
 
-def _dump(value: Any, spread: bool) -> str:
+def _dump(value, spread):
     """One value as TOML; ``spread`` puts each item of a list on a line of its own."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{json.dumps(k)} = {_dump(v, False)}" for k, v in value.items()) + "}"
@@ -127,7 +124,7 @@ def _dump(value: Any, spread: bool) -> str:
     return json.dumps(value)
 
 
-def _leaves(value: Any, path: tuple[str | int, ...]) -> Any:
+def _leaves(value, path):
     yield path, value
     if isinstance(value, dict):
         for key, item in value.items():
@@ -138,9 +135,9 @@ def _leaves(value: Any, path: tuple[str | int, ...]) -> Any:
 
 
 @given(tables)
-def test_any_document_is_mapped_completely_and_in_order(document: list[tuple[bool, dict[str, Any]]]) -> None:
+def test_any_document_is_mapped_completely_and_in_order(document):
     """Every value has a line, at which the text holds it, and no line lies before the value's table."""
-    rows: list[str] = []
+    rows = []
     for spread, table in document:
         rows.append("[[item]]")
         rows += [f"{json.dumps(key)} = {_dump(value, spread)}" for key, value in table.items()]

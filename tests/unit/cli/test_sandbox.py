@@ -17,20 +17,20 @@ ROOT = Path(course.__file__).parents[1]
 SCENES = ROOT / "course" / "sandbox" / "scenes"
 
 
-def sandbox(*arguments: str, cwd: Path, code: int = 0) -> subprocess.CompletedProcess[str]:
+def sandbox(*arguments, cwd, code=0):
     done = in_process("sandbox", *arguments, cwd=cwd, env={**os.environ, "COLUMNS": "80"})
     assert done.returncode == code, done.stderr + done.stdout
     return done
 
 
-def test_the_list_comes_out_of_a_pipe_with_or_without_its_word(tmp_path: Path) -> None:
+def test_the_list_comes_out_of_a_pipe_with_or_without_its_word(tmp_path):
     out = sandbox(cwd=tmp_path).stdout
     assert "newtons-cradle" in out
     assert len(out.splitlines()) >= 13
     assert sandbox("list", cwd=tmp_path).stdout == out
 
 
-def test_one_scene_is_listed_with_its_question_and_parameters(tmp_path: Path) -> None:
+def test_one_scene_is_listed_with_its_question_and_parameters(tmp_path):
     data = json.loads(sandbox("list", "incline", "--json", cwd=tmp_path).stdout)
     assert data["schema"] == "course.sandbox-list/1"
     (scene,) = data["scenes"]
@@ -42,14 +42,14 @@ def test_one_scene_is_listed_with_its_question_and_parameters(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("scene", [path.stem for path in SCENES.glob("*.toml")])
-def test_a_scene_lists_every_parameter_that_it_says_it_knows(tmp_path: Path, scene: str) -> None:
+def test_a_scene_lists_every_parameter_that_it_says_it_knows(tmp_path, scene):
     (listed,) = json.loads(sandbox("list", scene, "--json", cwd=tmp_path).stdout)["scenes"]
     refused = sandbox("play", scene, "--set", "nope=1", "--json", cwd=tmp_path, code=2).stdout
     known = json.loads(refused)["error"]["help"].removeprefix("Known: ").rstrip(".").split(", ")
     assert [parameter["name"] for parameter in listed["parameters"]] == known
 
 
-def test_a_piped_play_runs_unseen_and_compares_and_needs_no_word_play(tmp_path: Path) -> None:
+def test_a_piped_play_runs_unseen_and_compares_and_needs_no_word_play(tmp_path):
     out = sandbox("play", "head-on", "--guess", "1.5", cwd=tmp_path).stdout
     assert "your guess: 1.5 m/s" in out
     assert "simulation: 2 m/s" in out
@@ -60,14 +60,14 @@ def test_a_piped_play_runs_unseen_and_compares_and_needs_no_word_play(tmp_path: 
     assert "No such command 'plai'" in sandbox("plai", cwd=tmp_path, code=2).stderr
 
 
-def test_in_a_terminal_or_with_web_all_scenes_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_in_a_terminal_or_with_web_all_scenes_open(tmp_path, monkeypatch):
     from course.cli.frame.console import Console
     from course.cli.sandbox import play as opened
 
     asked = []
 
-    def view(name: str):
-        def play(chosen, desk, **more) -> bytes:
+    def view(name):
+        def play(chosen, desk, **more):
             path = desk.save("my-scene.toml", b"one")
             again = desk.save("my-scene.toml", b"two")
             asked.append((name, chosen, Path(path).name, Path(again).name, sorted(more)))
@@ -88,7 +88,7 @@ def test_in_a_terminal_or_with_web_all_scenes_open(tmp_path: Path, monkeypatch: 
     assert (tmp_path / "my-scene.toml").read_bytes() == b"one", "a file that is there stays"
 
 
-def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path: Path) -> None:
+def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path):
     options = ["--headless", "--guess", "0.04", "--set", "step=0.0004"]
     data = json.loads(sandbox("play", "bullet-wall", *options, "--json", cwd=tmp_path).stdout)
     said = data["prediction"]
@@ -100,14 +100,14 @@ def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path: Pat
     assert "restitution of the pair is 0." in " ".join(out.split())
 
 
-def test_describe_tells_the_run(tmp_path: Path) -> None:
+def test_describe_tells_the_run(tmp_path):
     out = sandbox("play", "restitution-row", "--describe", cwd=tmp_path).stdout
     assert "0.45 s: ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in out
     assert "ball 0 comes to rest" in out
     assert "0.004167 s in 1 step\n" in sandbox("head-on", "--duration", "0.004", cwd=tmp_path).stdout
 
 
-def test_json_is_one_object_with_everything(tmp_path: Path) -> None:
+def test_json_is_one_object_with_everything(tmp_path):
     done = sandbox("play", "unequal-masses", "--set", "ratio=1", "--headless", "--json", cwd=tmp_path)
     data = json.loads(done.stdout)
     assert data["schema"] == "course.sandbox/1"
@@ -120,14 +120,14 @@ def test_json_is_one_object_with_everything(tmp_path: Path) -> None:
     assert [event["kind"] for event in data["events"]] == ["contact", "rest"]
 
 
-def test_csv_holds_a_row_for_each_body_and_time(tmp_path: Path) -> None:
+def test_csv_holds_a_row_for_each_body_and_time(tmp_path):
     sandbox("play", "head-on", "--csv", "run.csv", "--every", "0.5", cwd=tmp_path)
     rows = list(csv.reader((tmp_path / "run.csv").read_text().splitlines()))
     assert rows[0][:3] == ["t [s]", "body", "x [m]"]
     assert [row[0] for row in rows[1:]] == [f"{t}" for t in (0.0, 0.5, 1.0, 1.5, 2.0) for _ in range(2)]
 
 
-def test_files_are_written_and_what_was_there_is_kept(tmp_path: Path) -> None:
+def test_files_are_written_and_what_was_there_is_kept(tmp_path):
     (tmp_path / "a.gif").write_bytes(b"old")
     files = ["--gif", "a.gif", "--png", "a.png", "--at", "0.51", "--record", "a.jsonl"]
     out = sandbox("play", "head-on", "--duration", "1", *files, cwd=tmp_path).stdout
@@ -142,7 +142,7 @@ def test_files_are_written_and_what_was_there_is_kept(tmp_path: Path) -> None:
     assert (data["schema"], data["same"], data["steps"]) == ("course.sandbox-replay/1", True, 240)
 
 
-def test_a_replay_that_differs_says_where_and_exits_with_one(tmp_path: Path) -> None:
+def test_a_replay_that_differs_says_where_and_exits_with_one(tmp_path):
     sandbox("play", "billiards-break", "--duration", "0.5", "--record", "a.jsonl", cwd=tmp_path)
     path = tmp_path / "a.jsonl"
     path.write_text(path.read_text().replace('"velocity":[6.0,', '"velocity":[6.1,'))
@@ -151,7 +151,7 @@ def test_a_replay_that_differs_says_where_and_exits_with_one(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("kind", ["sdf", "mjcf"])
-def test_an_export_goes_to_the_screen_or_a_file(tmp_path: Path, kind: str) -> None:
+def test_an_export_goes_to_the_screen_or_a_file(tmp_path, kind):
     out = sandbox("export", "head-on", "--format", kind, cwd=tmp_path).stdout
     assert out.startswith("<?xml")
     written = sandbox("export", "head-on", "--format", kind, "-o", "world.xml", "--json", cwd=tmp_path).stdout
@@ -164,7 +164,7 @@ def test_an_export_goes_to_the_screen_or_a_file(tmp_path: Path, kind: str) -> No
         assert beside is None
 
 
-def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_path: Path) -> None:
+def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_path):
     source = (SCENES / "head-on.toml").read_text()
     (tmp_path / "mine.toml").write_text(source)
     assert "simulation: 2 m/s" in sandbox("play", "mine.toml", cwd=tmp_path).stdout
@@ -204,13 +204,13 @@ def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_pa
         (["export", "galton-board", "--format", "sdf"], 2),
     ],
 )
-def test_each_mistake_has_its_exit_code_and_a_help(tmp_path: Path, arguments: list[str], code: int) -> None:
+def test_each_mistake_has_its_exit_code_and_a_help(tmp_path, arguments, code):
     data = json.loads(sandbox(*arguments, "--json", cwd=tmp_path, code=code).stdout)
     assert data["ok"] is False
     assert data["error"]["message"]
 
 
-def test_a_guess_made_in_a_workspace_is_kept(tmp_path: Path) -> None:
+def test_a_guess_made_in_a_workspace_is_kept(tmp_path):
     assert in_process("init", ".", cwd=tmp_path).returncode == 0
     sandbox("play", "head-on", "--guess", "2", cwd=tmp_path)
     from course.progress.workspace import Workspace
@@ -220,7 +220,7 @@ def test_a_guess_made_in_a_workspace_is_kept(tmp_path: Path) -> None:
     assert (event.data["guess"], event.data["right"]) == (2.0, True)
 
 
-def test_the_address_of_the_page_reaches_a_pipe_while_the_page_is_served(tmp_path: Path) -> None:
+def test_the_address_of_the_page_reaches_a_pipe_while_the_page_is_served(tmp_path):
     pytest.importorskip("starlette")
     pytest.importorskip("uvicorn")
     command = [sys.executable, "-m", "course", "sandbox", "play", "incline", "--web", "--no-browser"]
@@ -228,7 +228,6 @@ def test_the_address_of_the_page_reaches_a_pipe_while_the_page_is_served(tmp_pat
     with subprocess.Popen(
         command, cwd=tmp_path, env=buffered, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
     ) as serving:
-        assert serving.stdout is not None
         giving_up = threading.Timer(60, serving.kill)  # of what never says anything
         giving_up.start()
         try:

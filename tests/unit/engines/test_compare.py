@@ -1,7 +1,5 @@
 """A comparison measures what it can, remembers it, and says what it could not do."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import pytest
@@ -99,14 +97,7 @@ def test_the_second_time_it_is_remembered_and_fresh_measures_again(stand):
     assert {row.origin for row in fresh.rows} == {"measured"}
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
-        {"quick": True},
-        {"repeat": 2},
-        {"steps": (0.01,)},
-    ],
-)
+@pytest.mark.parametrize("other", [{"quick": True}, {"repeat": 2}, {"steps": (0.01,)}])
 def test_what_was_measured_otherwise_is_not_taken_for_it(stand, other):
     compare(Request(("mujoco",), ("bounce",)))
     done = compare(Request(("mujoco",), ("bounce",), **other))

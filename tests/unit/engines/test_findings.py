@@ -1,7 +1,5 @@
 """What is said and drawn of a comparison holds only what its rows show."""
 
-from __future__ import annotations
-
 import math
 
 import msgspec

@@ -5,8 +5,6 @@ is what is left: sentences that name an engine and hold a number with a unit, in
 two written rules by which engines are set for a test.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import re
@@ -55,7 +53,7 @@ _COMPUTED = (
 )
 
 
-def typed(page: str) -> set[str]:
+def typed(page):
     """Numbers with a unit in sentences that name an engine."""
     text = (ROOT / page).read_text(encoding="utf-8")
     for pattern in _COMPUTED:
@@ -69,17 +67,17 @@ def typed(page: str) -> set[str]:
     }
 
 
-def _default(engine: str, key: str) -> str:
+def _default(engine, key):
     (one,) = [option for option in base.options_of(engine).option if option.key == key]
     return one.default
 
 
-def _rests_mm() -> float:
+def _rests_mm():
     gaps, _ = drop(SoftConvex(), 0.0, 0.0, h=0.01, n=300)
     return -1000 * gaps[-1]
 
 
-def _row(engine: str, scenario: str, setting=TUNED):
+def _row(engine, scenario, setting=TUNED):
     return reference.row(engine, scenario, setting)
 
 
@@ -108,16 +106,16 @@ HOLDS = {
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_a_number_beside_an_engine_is_computed_or_checked_here(page: str) -> None:
+def test_a_number_beside_an_engine_is_computed_or_checked_here(page):
     assert typed(page) == {number for where, number in {*GIVEN, *HOLDS} if where == page}
 
 
 @pytest.mark.parametrize(("page", "number"), HOLDS)
-def test_what_is_typed_beside_an_engine_holds(page: str, number: str) -> None:
+def test_what_is_typed_beside_an_engine_holds(page, number):
     assert HOLDS[page, number]()
 
 
-def test_where_nothing_is_set_well_set_is_as_it_comes() -> None:
+def test_where_nothing_is_set_well_set_is_as_it_comes():
     """The tables say "the same" there."""
     for engine in ENGINES:
         for scenario in SCENARIOS:
@@ -130,7 +128,7 @@ def test_where_nothing_is_set_well_set_is_as_it_comes() -> None:
                 assert (tuned.value, tuned.samples) == (default.value, default.samples), (engine, scenario)
 
 
-def test_what_the_page_on_engines_says_in_words_is_in_the_measurements() -> None:
+def test_what_the_page_on_engines_says_in_words_is_in_the_measurements():
     rows = reference.load().rows
     # "MuJoCo with its default integrator, Bullet 3 well set and DART end ... with the same energy"
     (same,) = same_algorithm(rows).split("start by start, in ")[1:]
@@ -160,7 +158,7 @@ def test_what_the_page_on_engines_says_in_words_is_in_the_measurements() -> None
         assert _row(engine, "diagonal").value == pytest.approx(2**0.5, rel=0.01)
 
 
-def test_what_the_solution_says_of_four_engines_is_in_the_measurements() -> None:
+def test_what_the_solution_says_of_four_engines_is_in_the_measurements():
     four = ("ode", "bullet", "physx", "mujoco")
     # Bullet: "a double pendulum swings on in it with the least change of energy of the four" ...
     change = {engine: _row(engine, "double-pendulum", DEFAULT).value for engine in four}
@@ -178,11 +176,9 @@ def test_what_the_solution_says_of_four_engines_is_in_the_measurements() -> None
 PAIRS = [(engine, scenario) for engine in ENGINES for scenario in SCENARIOS]
 
 
-def _script(name: str):
+def _script(name):
     path = ROOT / "tests" / "benchmarks" / f"{name}.py"
     spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)

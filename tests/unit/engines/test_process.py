@@ -1,7 +1,5 @@
 """What an engine's process answers, whatever its engine does; its parent always gets a reply, and soon."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -1,7 +1,5 @@
 """What is missing, and the command that installs it, come from the course's own metadata."""
 
-from __future__ import annotations
-
 import importlib.metadata
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Scenarios measure what they say: on worlds whose behaviour is known in closed form."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,15 +3,16 @@
 What known wrong programs are told is in ``solutions/collisions/record.json``, which the audit keeps.
 """
 
-from __future__ import annotations
-
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from course.authoring.exercises.grading import LocalSubmission
 from course.scoring import kit
 
+SOLUTION = Path(__file__).resolve().parents[3] / "solutions" / "collisions" / "collisions.py"
 bundles = kit.companion("collisions", "bundles")
 probes, paths, tracks = bundles.probes, bundles.paths, bundles.tracks
 formulas = kit.reference("collisions", "formulas")
@@ -36,6 +37,23 @@ def test_of_a_drop_no_more_is_said_than_it_shows(e, path, code):
     wrong = path(t, lambda s: np.array(scene.at(s, truth.times, truth.speeds)), truth)
     found = tracks.of_drop(scene, truth, t, *wrong, h)
     assert (found and found.code) == code
+
+
+@pytest.mark.parametrize("e", [0.0, 0.005])
+def test_a_ball_that_bounces_once_a_step(e):
+    """It rests by its speed before the contact; one that is back within the step goes into the floor."""
+    scene, h = paths.Drop(0.6, -0.3, 0.1, e), 0.02
+    once = LocalSubmission(SOLUTION.read_text().replace("resting = up <= g * h", "resting = speed <= g * h"))
+    path, truth = once.call("simulate_drop", *scene.args(80 * h, h)), motions.bounces(scene, 81 * h, h)
+    assert tracks.of_drop(scene, truth, *path, h).code == "ONE_BOUNCE_A_STEP"
+
+
+def test_a_meeting_that_is_rounded():
+    scene = paths.HeadOn((1.0, 2.0), (-1.0, 1.07), (1.0, -0.9), 0.5, 0.5)
+    t, truth = 0.1 * np.arange(21), motions.meeting(scene)
+    x, v = scene.at(t, truth.contact, truth.after)
+    single = x.astype(np.float32), v.astype(np.float32)
+    assert tracks.of_head_on(scene, truth, t, *single, 0.1).code == "PRECISION_LOST"
 
 
 def drop(drawn):

@@ -3,8 +3,6 @@
 What known wrong programs are told is in ``solutions/digital-twin/record.json``, which the audit keeps.
 """
 
-from __future__ import annotations
-
 import inspect
 from pathlib import Path
 
@@ -219,6 +217,19 @@ SQUARES = np.array([right.fit_noise(*case[:2])["bias_random_walk"] for case in C
 SMALL = WALK * [0.6, 0.5, 0.01, 0.02, 0.6, 0.05, 0.3, 0.01]
 
 
+def squared(still, dt):
+    found = right.fit_noise(still, dt)
+    return {**found, "bias_random_walk": found["bias_random_walk"] ** 2}
+
+
+def of_bias0_over(seconds):
+    known = 0.01, 0.002, 0.006, -0.1
+    cases = [(scenes.recording(np.random.default_rng(i), 8000, *known), *known) for i in range(4)]
+    return sensors.of_bias0(
+        np.array([np.mean(still[: round(seconds / dt)]) for still, dt, *_ in cases]), cases
+    )
+
+
 @pytest.mark.parametrize(
     ("find", "code"),
     [
@@ -227,8 +238,12 @@ SMALL = WALK * [0.6, 0.5, 0.01, 0.02, 0.6, 0.05, 0.3, 0.01]
         (lambda: sensors.of_density(WALK, CASES, DENSITY), "FIT_SWAPPED"),
         (lambda: sensors.of_walk(SQUARES, CASES, program()), "WALK_TOO_SMALL"),
         (lambda: sensors.of_walk(SMALL, CASES, program()), "WALK_TOO_SMALL"),
+        (lambda: sensors.of_walk(1.7 * WALK, CASES, program()), "WALK_TOO_LARGE"),
+        (lambda: sensors.of_walk(SQUARES, CASES, program(fit_noise=squared)), "ROOT_FORGOTTEN"),
         (lambda: sensors.of_bias0(BIAS + 1.0, CASES), None),
+        (lambda: of_bias0_over(0.6), None),
+        (lambda: of_bias0_over(20.0), "BIAS0_TIME_TOO_LONG"),
     ],
 )
-def test_of_a_fit_no_more_is_said_than_its_numbers_show(find, code):
+def test_of_a_fit_is_said_what_its_numbers_show_and_no_more(find, code):
     assert getattr(find(), "code", None) == code

@@ -3,8 +3,6 @@
 What known wrong programs are told is in ``solutions/integrators/record.json``, which the audit keeps.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ A diagnosis is false where its words need not hold of every program that its pro
 condition of one that did not hold of them.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """What ``course report`` makes of an exercise: the words and rows follow the program, right or wrong."""
 
-from __future__ import annotations
-
 import functools
 import re
 
@@ -61,12 +59,7 @@ def test_what_is_not_written_yet_is_said_to_be_so(exercise_id):
         ("collisions", "simulate_drop.EULER_IN_FLIGHT", 3, r"8 ms: 33\.28 mm before the first contact"),
         ("validation", "", 0, r"good twin: .* your coverage finds 9\d\.\d% inside\. Below, a fifth"),
         # Of a filter with the right noise the mean NEES is 2; of one that believes another noise it is not.
-        (
-            "validation",
-            "",
-            1,
-            r"right, your NEES is (1\.[7-9]|2\.[0-2]).*half, .* is [4-9].*twice, .* is 1",
-        ),
+        ("validation", "", 1, r"right, your NEES is (1\.[7-9]|2\.[0-2]).*half, .* is [4-9].*twice, .* is 1"),
         ("validation", "coverage.OUTSIDE_COUNTED", 0, r"good twin: .*finds \d\.\d% inside"),
         ("validation", "nees.DIVIDED_BY_D", 1, r"NEES is [01]\..* 0% above and at (9\d|100)% below"),
         ("validation", "block_bootstrap_ci.IID_BOOTSTRAP", 2, r"0 of them hold\. All are 9\.\d mm wide"),

@@ -3,8 +3,6 @@
 What known wrong programs are told is in ``solutions/sim-to-real/record.json``, which the audit keeps.
 """
 
-from __future__ import annotations
-
 import ast
 import math
 import re
@@ -120,24 +118,29 @@ def off(truths, **changes):
 
 
 def fitted():
-    """The estimates of the README's own fit."""
-    found = off(RECORDED)
-    for estimate, (_, u, y), truth in zip(found, RECORDINGS, RECORDED, strict=True):
-        values = bench.fits(u, y, truth["tau"], truth["latency"])[""]
-        estimate |= {
-            k: (v, v - 0.01 * abs(v), v + 0.01 * abs(v))
-            for k, v in zip(("m", "b", "Fc"), values, strict=True)
-        }
-    return found
+    """The README's own fit at the right times, with one standard error of a jackknife to each side."""
+    for (_, u, y), truth in zip(RECORDINGS, RECORDED, strict=True):
+        times = truth["tau"], truth["latency"]
+        values = dict(zip(("m", "b", "Fc"), bench.fits(u, y, *times)[""], strict=True))
+        known = {**truth, "lag": sum(times), **values}
+        errors = zip((*cart.NAMES, "lag"), bench.errors(u, y, *times)[""], strict=True)
+        yield {k: (known[k], known[k] - e, known[k] + e) for k, e in errors}
+
+
+def exchanged():
+    """What is guessed where the two times have each other's values."""
+    with pytest.raises(kit.CheckFailed) as caught:
+        judge.expect_accurate(
+            [{**one, "tau": one["latency"], "latency": one["tau"]} for one in fitted()], RECORDED
+        )
+    return caught.value.guess
 
 
 EDGE = {"tau": lambda p: 0.15, "lag": lambda p: 0.15 + p["latency"]}
 HEAVIER = off(RECORDED, m=lambda p: 1.2 * p["m"])
 LATE = {"latency": lambda p: p["latency"] + 0.024, "lag": lambda p: p["lag"] + 0.024}
-TIMES = [
-    cart.SHEET,
-    {**cart.PUBLIC, "tau": 0.08, "latency": 0.081},
-]  # the second tells nothing of an exchange
+#: The second tells nothing of an exchange.
+TIMES = [cart.SHEET, {**cart.PUBLIC, "tau": 0.08, "latency": 0.081}]
 
 
 @pytest.mark.parametrize(
@@ -145,7 +148,9 @@ TIMES = [
     [
         (lambda: probes.of_values(off(TRUTHS), TRUTHS), None),
         (lambda: probes.of_values(off(RECORDED), RECORDED, RECORDINGS), None),
-        (lambda: probes.of_values(fitted(), RECORDED, RECORDINGS), None),
+        (lambda: probes.of_values(list(fitted()), RECORDED, RECORDINGS), None),
+        (lambda: probes.of_misses(list(fitted()), RECORDED, RECORDINGS), "INTERVAL_ONE_ERROR"),
+        (exchanged, "TIMES_EXCHANGED"),
         # A mass that is wrong is none of differences, nor is one with a time at the edge.
         (lambda: probes.of_values(HEAVIER, RECORDED, RECORDINGS), "OTHER_FIT"),
         (lambda: probes.of_misses(HEAVIER, RECORDED, RECORDINGS), "OTHER_FIT"),
@@ -183,8 +188,18 @@ def clipped(estimate, box):
     return {"kp": min(4.0, 9.3 * estimate["m"][0]), "kd": 4.5 * estimate["m"][0]}
 
 
-def of_gains(answer, gains):
+def by_ratio(estimate, box):
+    return {"kp": 7.0 * estimate["m"][0], "kd": 0.48}
+
+
+def by_ends(estimate, box):
+    heaviest = box["m"][1] * estimate["m"][2]
+    return {"kp": 7.0 * heaviest + estimate["latency"][2], "kd": 2.4 * heaviest}
+
+
+def of_gains(answer, gains=None):
     asked = cart.with_intervals(cart.PUBLIC), cart.MATCHED
+    gains = gains or probes.gains_of(answer(*asked))
     return probes.of_gains(answered(answer), *asked, gains, lambda *pair: cart.public_success(*pair)[0])
 
 
@@ -207,7 +222,9 @@ def reads(t, u, y):
         (lambda: judge.expect_forgetful(FIRST, OTHER, OTHER), None),  # two in a row differ: drawn anew
         (lambda: probes.of_command_kept(answered(reads), RECORDINGS), None),
         (lambda: probes.of_command_kept(answered(lambda *_: FIRST), ()), None),
-        (lambda: of_gains(clipped, probes.gains_of(clipped(FIRST, None))), "SEARCH_ENDED_EARLY"),
+        (lambda: of_gains(clipped), "SEARCH_ENDED_EARLY"),
+        (lambda: of_gains(by_ratio), "KD_IS_RATIO"),
+        (lambda: of_gains(by_ends), "ENDS_READ"),
         (lambda: of_gains(raises("timeout"), (4.0, 2.0)), None),
         (lambda: words.of_promise("success", math.nan), "PROMISE_TOO_SMALL"),
         # A force swings at one rate only if it does so to its end.

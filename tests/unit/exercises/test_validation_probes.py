@@ -3,8 +3,6 @@
 What known wrong programs are told is in ``solutions/validation/record.json``, which the audit keeps.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

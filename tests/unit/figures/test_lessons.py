@@ -1,7 +1,5 @@
 """What the figures of the lessons show is what their titles and the lessons say."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -21,13 +19,13 @@ from course.simulations.experiments.dynamics import from_hanging, swing
     ("method", "limit"),
     [("semi_implicit_euler", 2.0), ("velocity_verlet", 2.0), ("rk4", 2.0 * math.sqrt(2.0))],
 )
-def test_growth_passes_one_at_the_stability_limit(method: str, limit: float) -> None:
+def test_growth_passes_one_at_the_stability_limit(method, limit):
     # The maps have a double eigenvalue at the limit, where round-off shows as its square root.
     assert integrators._growth(method, limit - 0.01) <= 1.0 + 1e-7
     assert integrators._growth(method, limit + 0.01) > 1.0 + 1e-3
 
 
-def test_explicit_euler_grows_at_every_step() -> None:
+def test_explicit_euler_grows_at_every_step():
     assert integrators._growth("explicit_euler", 0.01) > 1.0 + 1e-5
 
 
@@ -35,12 +33,12 @@ def test_explicit_euler_grows_at_every_step() -> None:
     ("method", "order"),
     [("explicit_euler", 1), ("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)],
 )
-def test_errors_drawn_have_the_slopes_written_beside_them(method: str, order: int) -> None:
+def test_errors_drawn_have_the_slopes_written_beside_them(method, order):
     hs, errors = integrators._errors_at_end(method, np.array([640, 1280, 2560]), 5.0)
     assert convergence_order(hs, errors) == pytest.approx(order, abs=0.05)
 
 
-def test_every_curve_of_the_energy_figure_rises_and_runge_kutta_crosses_verlet_where_marked() -> None:
+def test_every_curve_of_the_energy_figure_rises_and_runge_kutta_crosses_verlet_where_marked():
     (axes,) = integrators.energy_error().axes
     curves = {line.get_color(): line for line in axes.lines if len(line.get_xdata()) > 1}
     assert all(np.all(np.diff(line.get_ydata()) >= 0) for line in curves.values())
@@ -51,14 +49,14 @@ def test_every_curve_of_the_energy_figure_rises_and_runge_kutta_crosses_verlet_w
     assert crossing == pytest.approx(18.0 / integrators.ENERGY_Z**4, rel=0.1)
 
 
-def test_a_robot_without_delay_stands_only_where_its_reaction_outweighs_gravity() -> None:
+def test_a_robot_without_delay_stands_only_where_its_reaction_outweighs_gravity():
     weight = 50.0 * 9.81 * 0.9  # N m per radian of lean
     kp, kd = np.array([0.5 * weight, 2.0 * weight]), np.array([100.0, 300.0])
     assert robots.fate(kp, kd, 0.0).tolist() == [FALLEN, STANDING]
 
 
-def test_a_free_body_turns_over_four_times_and_only_explicit_euler_gains_energy() -> None:
-    def gain(method: str) -> float:
+def test_a_free_body_turns_over_four_times_and_only_explicit_euler_gains_energy():
+    def gain(method):
         _, spins, _ = contact.free_spin(method)
         ends = kinetic_energy(contact.INERTIA, spins[[0, -1]])
         return float(ends[1] / ends[0] - 1)
@@ -72,20 +70,20 @@ def test_a_free_body_turns_over_four_times_and_only_explicit_euler_gains_energy(
 
 
 @pytest.mark.parametrize(("restitution", "end"), [(1.0, -6.0), (0.5, -3.25), (0.0, -0.5)])
-def test_the_pair_passes_or_parts_as_its_restitution_says(restitution: float, end: float) -> None:
+def test_the_pair_passes_or_parts_as_its_restitution_says(restitution, end):
     _, x = contact.head_on(restitution)
     assert x[-1].tolist() == pytest.approx([end, -end], abs=1e-9)
 
 
-def test_a_wall_is_missed_from_the_speed_on_at_which_a_step_spans_wall_and_ball() -> None:
+def test_a_wall_is_missed_from_the_speed_on_at_which_a_step_spans_wall_and_ball():
     assert contact.passed(3.9) == 0.0
     assert contact.passed(4.1) > 0.0
     assert contact.passed(20.0) == pytest.approx(0.8)
     assert contact.passed(20.0, contact.STEP_S / 2) == pytest.approx(0.6)
 
 
-def test_planned_torques_carry_the_bare_arm_and_feedback_carries_a_forgotten_load() -> None:
-    def miss(load: float, *, feedback: bool = False) -> float:
+def test_planned_torques_carry_the_bare_arm_and_feedback_carries_a_forgotten_load():
+    def miss(load, *, feedback=False):
         hand = robots.driven(load, feedback=feedback)
         return math.dist(hand[-1], robots.END)
 
@@ -95,7 +93,7 @@ def test_planned_torques_carry_the_bare_arm_and_feedback_carries_a_forgotten_loa
     assert miss(0.1, feedback=True) < 0.005
 
 
-def test_single_precision_has_a_best_step_and_double_precision_does_not_yet() -> None:
+def test_single_precision_has_a_best_step_and_double_precision_does_not_yet():
     steps = 2.0 ** -np.arange(8, 18)
     single = [sim_to_real._typical_error(float(h), np.float32) for h in steps]
     double = [sim_to_real._typical_error(float(h), np.float64) for h in steps]
@@ -104,7 +102,7 @@ def test_single_precision_has_a_best_step_and_double_precision_does_not_yet() ->
     assert np.all(np.diff(double) < 0)
 
 
-def test_two_crowds_with_different_steps_point_alike_though_their_paths_part() -> None:
+def test_two_crowds_with_different_steps_point_alike_though_their_paths_part():
     coarse, fine = (np.array(sim_to_real._crowd(h)) for h in (0.02, 0.01))
     assert coarse.sum() == pytest.approx(100.0)
     assert np.max(np.abs(coarse - fine)) < 0.5  # of about 5.6 in each direction
@@ -114,7 +112,7 @@ def test_two_crowds_with_different_steps_point_alike_though_their_paths_part() -
     assert abs(ends[0] - ends[1]) > 0.5
 
 
-def test_every_error_is_drawn_inside_its_panel() -> None:
+def test_every_error_is_drawn_inside_its_panel():
     with house_style():
         figure = engines.settings()
     for axes in figure.axes:
@@ -123,7 +121,7 @@ def test_every_error_is_drawn_inside_its_panel() -> None:
         assert all(low <= x <= high for x in drawn)
 
 
-def test_an_error_of_the_reference_is_its_value_against_the_truth() -> None:
+def test_an_error_of_the_reference_is_its_value_against_the_truth():
     row = reference.row("mujoco", "bounce", "default")
     assert row.value == 0.0
     assert engines.error("mujoco", "bounce", "default").mean == pytest.approx(100.0)
@@ -131,18 +129,18 @@ def test_an_error_of_the_reference_is_its_value_against_the_truth() -> None:
     assert engines.error("dart", "double-pendulum", "tuned").worst == pytest.approx(swing.highest)
 
 
-def test_the_twin_brings_the_robot_back_to_its_speed() -> None:
+def test_the_twin_brings_the_robot_back_to_its_speed():
     speeds = sim_to_real.driven()
     assert speeds["fixed"][-1] == pytest.approx(0.5 / 0.8, rel=1e-3)
     assert speeds["twin"][-200:].mean() == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_learning_copy_finds_the_friction_whatever_the_noise(seed: int) -> None:
+def test_the_learning_copy_finds_the_friction_whatever_the_noise(seed):
     assert sim_to_real.followed(seed=seed)["friction"][-1] == pytest.approx(0.8, rel=0.05)
 
 
-def test_a_late_integrator_is_unstable_beyond_half_pi_over_its_delay() -> None:
+def test_a_late_integrator_is_unstable_beyond_half_pi_over_its_delay():
     delay = 0.1
     limit = np.pi / 2 / delay
     below, above = sim_to_real.settles([0.75 * limit, 1.1 * limit], delay, 1.0)[:, 0]
@@ -150,7 +148,7 @@ def test_a_late_integrator_is_unstable_beyond_half_pi_over_its_delay() -> None:
     assert above == pytest.approx(3.0)
 
 
-def test_the_wall_feels_the_mass_that_a_newton_at_the_hand_accelerates() -> None:
+def test_the_wall_feels_the_mass_that_a_newton_at_the_hand_accelerates():
     arm = TwoLinkArm()
     for degrees in (1.0, 10.0, 90.0, 150.0):
         bend = np.radians(degrees)
@@ -162,7 +160,7 @@ def test_the_wall_feels_the_mass_that_a_newton_at_the_hand_accelerates() -> None
     assert float(robots.felt(np.radians(30.0))) < 2.0
 
 
-def test_the_shadows_of_the_two_boxes_are_apart_and_their_upright_outlines_are_not() -> None:
+def test_the_shadows_of_the_two_boxes_are_apart_and_their_upright_outlines_are_not():
     with house_style():
         left = contact.corners().axes[0]
     ends = [np.column_stack(line.get_data()) @ np.array([1.0, 1.0]) / np.sqrt(2.0) for line in left.lines]

@@ -1,14 +1,10 @@
 """The figures: each can be drawn, looks as it did, says what it shows and can be told apart by anyone."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from course.errors import NotFoundError, UsageError
@@ -20,9 +16,7 @@ GOLDEN = Path(__file__).parents[2] / "fixtures" / "golden"
 
 
 @pytest.mark.parametrize("figure_id", ["integrators-energy", "integrators-order", "integrators-phase"])
-def test_the_tolerance_sees_one_method_drawn_as_another(
-    figure_id: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_tolerance_sees_one_method_drawn_as_another(figure_id, monkeypatch):
     from course.figures import integrators
 
     swapped = {**integrators.STEPPERS, "explicit_euler": integrators.STEPPERS["semi_implicit_euler"]}
@@ -31,10 +25,10 @@ def test_the_tolerance_sees_one_method_drawn_as_another(
     assert fault.fix.endswith(f"course author pictures {figure_id}")
 
 
-def drawn(change: Callable[[Figure, Axes], object]) -> Callable[[], Figure]:
+def drawn(change):
     """A builder of a figure that is right but for one change."""
 
-    def builder() -> Figure:
+    def builder():
         figure = Figure(figsize=(WIDTH_IN, 3.0), layout="constrained")
         axes = figure.subplots()
         figure.suptitle("One straight line that goes up steadily")
@@ -64,9 +58,7 @@ def drawn(change: Callable[[Figure, Axes], object]) -> Callable[[], Figure]:
         ),
     ],
 )
-def test_a_figure_that_cannot_be_drawn_or_read_is_found(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: Callable[[Figure, Axes], object], problem: str
-) -> None:
+def test_a_figure_that_cannot_be_drawn_or_read_is_found(tmp_path, monkeypatch, change, problem):
     from course.figures import integrators
 
     kept = tmp_path / "kept"
@@ -80,7 +72,7 @@ def test_a_figure_that_cannot_be_drawn_or_read_is_found(
     assert any(problem in fault.problem for fault in faults("integrators-phase", kept))
 
 
-def test_a_figure_that_nobody_looked_at_is_told_its_cure(tmp_path: Path) -> None:
+def test_a_figure_that_nobody_looked_at_is_told_its_cure(tmp_path):
     (fault,) = faults("integrators-stability", tmp_path)
     assert "no picture to be compared with" in fault.problem
     assert "course author pictures integrators-stability" in fault.fix
@@ -88,20 +80,20 @@ def test_a_figure_that_nobody_looked_at_is_told_its_cure(tmp_path: Path) -> None
     assert (fault.line or 0) > 1
 
 
-def luminance(colour: str) -> float:
+def luminance(colour):
     parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
-def test_methods_differ_in_more_than_colour_and_their_names_are_legible_on_white() -> None:
+def test_methods_differ_in_more_than_colour_and_their_names_are_legible_on_white():
     looks = METHODS.values()
     assert len({look.line for look in looks}) == len({look.marker for look in looks}) == len(METHODS)
     # WCAG 2.2, 1.4.3: letters need a contrast of 4.5 to 1.
     assert all(1.05 / (luminance(look.ink) + 0.05) >= 4.5 for look in looks)
 
 
-def test_a_readers_own_settings_do_not_reach_a_figure() -> None:
+def test_a_readers_own_settings_do_not_reach_a_figure():
     import matplotlib as mpl
 
     before = registry.png("integrators-stability")
@@ -109,18 +101,18 @@ def test_a_readers_own_settings_do_not_reach_a_figure() -> None:
         assert registry.png("integrators-stability") == before
 
 
-def test_a_folder_that_cannot_be_written_to_is_a_usage_error(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_written_to_is_a_usage_error(tmp_path):
     (tmp_path / "file").write_text("in the way", encoding="utf-8")
     with pytest.raises(UsageError, match="cannot be written"):
         registry.save("integrators-stability", tmp_path / "file")
 
 
-def test_an_unknown_figure_is_not_found() -> None:
+def test_an_unknown_figure_is_not_found():
     with pytest.raises(NotFoundError, match="no figure 'nothing'"):
         registry.build("nothing")
 
 
-def test_asking_which_figures_there_are_loads_no_matplotlib() -> None:
+def test_asking_which_figures_there_are_loads_no_matplotlib():
     code = (
         "import sys; from course.figures.registry import figure_ids;"
         "figure_ids(); print('matplotlib' in sys.modules)"

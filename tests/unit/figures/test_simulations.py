@@ -1,14 +1,10 @@
 """The figures of the simulations show what was run, whatever was set, and say what it came to."""
 
-from __future__ import annotations
-
 import functools
 import math
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from course.errors import InternalError
 from course.figures import experiments as simulations
@@ -18,16 +14,16 @@ from course.simulations.registry import get
 
 
 @functools.cache
-def result(name: str, *pairs: str) -> Result:
+def result(name, *pairs):
     return run(get(name), pairs)
 
 
-def figure(name: str, *pairs: str) -> Figure:
+def figure(name, *pairs):
     with house_style():
         return simulations.draw(result(name, *pairs))
 
 
-def labels(axes: Axes) -> list[str]:
+def labels(axes):
     legend = axes.get_legend()
     return [text.get_text() for text in legend.get_texts()] if legend else []
 
@@ -53,7 +49,7 @@ def labels(axes: Axes) -> list[str]:
         ("contact-models", ["restitution=1", "erp=1", "height=100", "step=0.02"]),
     ],
 )
-def test_extreme_settings_still_give_a_figure_with_a_title_that_fits(name: str, pairs: list[str]) -> None:
+def test_extreme_settings_still_give_a_figure_with_a_title_that_fits(name, pairs):
     drawn = figure(name, *pairs)
     with house_style():
         drawn.canvas.draw()
@@ -65,7 +61,7 @@ def test_extreme_settings_still_give_a_figure_with_a_title_that_fits(name: str, 
     "name",
     ["projectile", "collision", "integrators", "rotation", "solver-iterations", "substeps", "contact-models"],
 )
-def test_a_legend_beside_the_axes_stays_on_the_page(name: str) -> None:
+def test_a_legend_beside_the_axes_stays_on_the_page(name):
     drawn = figure(name)
     drawn.canvas.draw()
     boxes = [axes.get_legend().get_window_extent() for axes in drawn.axes if axes.get_legend()]
@@ -73,32 +69,32 @@ def test_a_legend_beside_the_axes_stays_on_the_page(name: str) -> None:
     assert all(box.x1 <= drawn.bbox.x1 for box in boxes)
 
 
-def test_the_title_is_the_finding_of_the_run_that_is_drawn() -> None:
+def test_the_title_is_the_finding_of_the_run_that_is_drawn():
     assert figure("collision", "restitution=0.5").get_suptitle() == (
         "Contact at 2.25 s conserves momentum and 25 % of the kinetic energy"
     )
 
 
-def test_balls_are_drawn_in_their_width_and_bounce_where_they_touch() -> None:
+def test_balls_are_drawn_in_their_width_and_bounce_where_they_touch():
     (axes,) = figure("collision").axes
     left = next(line for line in axes.lines if line.get_label() == "left ball and its width")
     assert np.max(np.asarray(left.get_ydata())) == pytest.approx(-0.5, abs=0.02)
     assert "contact at 2.25 s" in labels(axes)
 
 
-def test_errors_of_the_two_eulers_are_drawn_one_each_way() -> None:
+def test_errors_of_the_two_eulers_are_drawn_one_each_way():
     right = figure("free-fall").axes[1]
     ends = {line.get_color(): float(np.asarray(line.get_ydata())[-1]) for line in right.lines}
     assert ends[METHODS["explicit_euler"].color] == pytest.approx(0.0981)
     assert ends[METHODS["semi_implicit_euler"].color] == pytest.approx(-0.0981)
 
 
-def test_stacks_are_labelled_with_the_iterations_they_need() -> None:
+def test_stacks_are_labelled_with_the_iterations_they_need():
     (axes,) = figure("solver-iterations").axes
     assert labels(axes) == ["2 boxes: 7", "5 boxes: 45", "10 boxes: 178", "20 boxes: 713"]
 
 
-def test_the_times_at_which_two_pendulums_part_are_marked_on_the_curve() -> None:
+def test_the_times_at_which_two_pendulums_part_are_marked_on_the_curve():
     lower = figure("chaos", "duration=12", "step=0.01").axes[1]
     curve = np.asarray(lower.lines[0].get_ydata())
     t = np.asarray(lower.lines[0].get_xdata())
@@ -109,6 +105,6 @@ def test_the_times_at_which_two_pendulums_part_are_marked_on_the_curve() -> None
         assert math.log(np.interp(when, t, curve) / level) == pytest.approx(0.0, abs=0.1)
 
 
-def test_a_simulation_without_a_figure_is_our_fault() -> None:
+def test_a_simulation_without_a_figure_is_our_fault():
     with pytest.raises(InternalError, match="has no figure"):
         simulations.draw(Result((), "", "", (), simulation="nothing"))

@@ -1,7 +1,5 @@
 """Figures at the size of a terminal: their words are letters of it, none on another."""
 
-from __future__ import annotations
-
 import functools
 import json
 import subprocess

@@ -3,7 +3,6 @@
 import itertools
 import re
 from html.parser import HTMLParser
-from pathlib import Path
 
 _VOID = {"br", "hr", "img", "input", "link", "meta"}
 _HEADINGS = ["h1", "h2", "h3", "h4"]
@@ -18,28 +17,28 @@ class Page(HTMLParser):
         elements: name and attributes, in order.
     """
 
-    def __init__(self, source: str) -> None:
+    def __init__(self, source):
         super().__init__(convert_charrefs=True)
         self.source = source
-        self.elements: list[tuple[str, dict[str, str | None]]] = []
-        self.faults: list[str] = []
-        self.pieces: list[str] = []
-        self.tables: dict[str, list[list[str]]] = {}
-        self._open: list[str] = []
-        self._rows: list[list[str]] = []
+        self.elements = []
+        self.faults = []
+        self.pieces = []
+        self.tables = {}
+        self._open = []
+        self._rows = []
         self._caption = ""
         self.feed(source)
         self.close()
         self.faults += [f"<{name}> is not closed" for name in self._open]
 
     @property
-    def text(self) -> str:
+    def text(self):
         return "\n".join(self.pieces)
 
-    def all(self, name: str) -> list[dict[str, str | None]]:
+    def all(self, name):
         return [attributes for tag, attributes in self.elements if tag == name]
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_starttag(self, tag, attrs):
         if len({name for name, _ in attrs}) < len(attrs):
             self.faults.append(f"<{tag}> has an attribute twice")
         self.elements.append((tag, dict(attrs)))
@@ -52,12 +51,12 @@ class Page(HTMLParser):
         if tag not in _VOID:
             self._open.append(tag)
 
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_startendtag(self, tag, attrs):
         self.elements.append((tag, dict(attrs)))
         if "svg" not in self._open:
             self.faults.append(f"<{tag}/> outside of a drawing")
 
-    def handle_endtag(self, tag: str) -> None:
+    def handle_endtag(self, tag):
         if not self._open or self._open[-1] != tag:
             self.faults.append(f"</{tag}> closes {self._open[-1:]}")
             return
@@ -65,7 +64,7 @@ class Page(HTMLParser):
         if tag == "table" and self._caption:
             self.tables[self._caption] = self._rows
 
-    def handle_data(self, data: str) -> None:
+    def handle_data(self, data):
         if self._open and self._open[-1] in {"style", "script"}:
             return
         self.pieces.append(data)
@@ -75,15 +74,15 @@ class Page(HTMLParser):
             row = self._rows[-1]
             row[-1] = f"{row[-1]} {data}".strip()
 
-    def unknown_decl(self, data: str) -> None:
+    def unknown_decl(self, data):
         self.faults.append(f"a declaration: {data[:40]}")
 
 
-def read_page(path: Path) -> Page:
+def read_page(path):
     return Page(path.read_text("utf-8"))
 
 
-def faults(page: Page, *, scripted: bool) -> list[str]:
+def faults(page, *, scripted):
     """What is wrong with a page that everybody must be able to read, and that nobody may attack."""
     found = list(page.faults)
     names = [name for name, _ in page.elements]

@@ -31,11 +31,11 @@ from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibi
 ROOT = Path(__file__).resolve().parents[3]
 
 
-def key(student: str = "ada", digest: str = "a" * 64) -> Key:
+def key(student="ada", digest="a" * 64):
     return Key(student, "doubling", digest, "v1", 7)
 
 
-def verdict(score: float = 5.0, state: str = "graded", actual: object = None) -> Verdict:
+def verdict(score=5.0, state="graded", actual=None):
     check = CheckResult(
         id="c", title="t", task="double", status=Status.FAIL, visibility=Visibility.HIDDEN, points=0,
         max_points=2, actual=actual,
@@ -46,7 +46,7 @@ def verdict(score: float = 5.0, state: str = "graded", actual: object = None) ->
     )  # fmt: skip
 
 
-def sql(path: Path, *statements: str) -> list[int]:
+def sql(path, *statements):
     """Change a gradebook behind its back; how many rows each statement found."""
     with contextlib.closing(sqlite3.connect(path)) as db, db:
         return [db.execute(statement).rowcount for statement in statements]
@@ -56,7 +56,7 @@ FILES = {"doubling.py": b"\xff\x00 not text", "b.py": b""}
 EXERCISES = [GradedExercise("b", "B", 2.0, 0.7, 2), GradedExercise("a", "A", 3.0, 0.5, 3)]
 
 
-def full(path: Path) -> None:
+def full(path):
     """A gradebook with something in every table."""
     with Gradebook(path, create=True) as book:
         book.set_meta(seed="7", roster="[]")
@@ -68,7 +68,7 @@ def full(path: Path) -> None:
         book.add_override(Override("ada", "doubling", 5.0, "first"))
 
 
-def test_what_is_kept_comes_back_as_it_went_in(tmp_path: Path) -> None:
+def test_what_is_kept_comes_back_as_it_went_in(tmp_path):
     """Numbers that JSON has not come back as words."""
     path = tmp_path / "g.sqlite"
     with pytest.raises(NotFoundError):
@@ -86,7 +86,7 @@ def test_what_is_kept_comes_back_as_it_went_in(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"this is no database, but it is long enough to be one" * 20, b""])
-def test_what_is_no_gradebook_is_said_to_be_none(tmp_path: Path, content: bytes) -> None:
+def test_what_is_no_gradebook_is_said_to_be_none(tmp_path, content):
     path = tmp_path / "g.sqlite"
     path.write_bytes(content)
     with pytest.raises(IntegrityError):
@@ -94,7 +94,7 @@ def test_what_is_no_gradebook_is_said_to_be_none(tmp_path: Path, content: bytes)
     assert path.read_bytes() == content
 
 
-def test_a_changed_result_fails_its_checksum_and_names_the_student(tmp_path: Path) -> None:
+def test_a_changed_result_fails_its_checksum_and_names_the_student(tmp_path):
     path = tmp_path / "g.sqlite"
     with Gradebook(path, create=True) as book:
         book.add(Result(key(), verdict()))
@@ -103,7 +103,7 @@ def test_a_changed_result_fails_its_checksum_and_names_the_student(tmp_path: Pat
         list(book.results())
 
 
-def test_grading_anew_keeps_the_old_result_beside_the_new(tmp_path: Path) -> None:
+def test_grading_anew_keeps_the_old_result_beside_the_new(tmp_path):
     with Gradebook(tmp_path / "g.sqlite", create=True) as book:
         book.begin_run("run", {"timeout": 3.0})
         book.add(Result(key(), verdict(1)))
@@ -116,8 +116,8 @@ def test_grading_anew_keeps_the_old_result_beside_the_new(tmp_path: Path) -> Non
         assert newest.verdict.score == 3
 
 
-def test_handing_in_an_earlier_version_again_makes_its_score_count_again(tmp_path: Path) -> None:
-    def counts() -> list[float]:
+def test_handing_in_an_earlier_version_again_makes_its_score_count_again(tmp_path):
+    def counts():
         return [result.verdict.score for result in book.results()]
 
     with Gradebook(tmp_path / "g.sqlite", create=True) as book:
@@ -144,7 +144,7 @@ os._exit(9)
 """
 
 
-def test_a_reported_result_survives_the_death_of_its_process(tmp_path: Path) -> None:
+def test_a_reported_result_survives_the_death_of_its_process(tmp_path):
     """The writer ends without closing anything; whoever looks next puts things in order."""
     path = tmp_path / "g.sqlite"
     assert subprocess.run([sys.executable, "-c", _KILLED, path], cwd=ROOT, check=False).returncode == 9
@@ -154,7 +154,7 @@ def test_a_reported_result_survives_the_death_of_its_process(tmp_path: Path) -> 
     assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
 
 
-def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path: Path) -> None:
+def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path):
     path = tmp_path / "g.sqlite"
     with Gradebook(path, create=True, writing=True) as book:
         with pytest.raises(UsageError, match="Another run"):
@@ -165,11 +165,11 @@ def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path: Path) -> No
     assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
 
 
-def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(tmp_path: Path) -> None:
+def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(tmp_path):
     path = tmp_path / "g.sqlite"
-    added: list[int] = []
+    added = []
 
-    def fill() -> None:
+    def fill():
         with Gradebook(path, create=True, writing=True) as book:
             book._db.execute("PRAGMA max_page_count = 40")
             for number in range(1000):
@@ -187,7 +187,7 @@ def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(tmp_path: Path) -> 
         book.add(Result(key("one more"), verdict()))
 
 
-def test_a_gradebook_of_the_first_format_is_brought_up_to_date(tmp_path: Path) -> None:
+def test_a_gradebook_of_the_first_format_is_brought_up_to_date(tmp_path):
     path = tmp_path / "g.sqlite"
     body = msgspec.json.encode(verdict(4))
     with contextlib.closing(sqlite3.connect(path)) as db:
@@ -213,7 +213,7 @@ def test_a_gradebook_of_the_first_format_is_brought_up_to_date(tmp_path: Path) -
             assert book.meta()["seed"] == "7"
 
 
-def test_what_an_instructor_decided_is_kept_in_order_and_checked(tmp_path: Path) -> None:
+def test_what_an_instructor_decided_is_kept_in_order_and_checked(tmp_path):
     path = tmp_path / "g.sqlite"
     with Gradebook(path, create=True) as book:
         book.add_override(Override("ada", "doubling", 5.0, "first"))
@@ -242,7 +242,7 @@ def test_what_an_instructor_decided_is_kept_in_order_and_checked(tmp_path: Path)
         "UPDATE times SET student = CAST(x'ff41' AS TEXT)",
     ],
 )
-def test_what_changed_since_it_was_closed_is_damage(tmp_path: Path, change: str) -> None:
+def test_what_changed_since_it_was_closed_is_damage(tmp_path, change):
     path = tmp_path / "g.sqlite"
     full(path)
     Gradebook(path).close()
@@ -260,9 +260,7 @@ def test_what_changed_since_it_was_closed_is_damage(tmp_path: Path, change: str)
         "UPDATE snapshots SET packed = CAST(packed || 'x' AS BLOB)",
     ],
 )
-def test_what_is_too_large_to_be_read_at_every_opening_is_read_by_who_looks_at_everything(
-    tmp_path: Path, change: str
-) -> None:
+def test_what_is_too_large_to_be_read_at_every_opening_is_read_by_who_looks_at_everything(tmp_path, change):
     path = tmp_path / "g.sqlite"
     full(path)
     with Gradebook(path, writing=True) as book:
@@ -284,7 +282,7 @@ BEFORE_4 = [
 ]
 
 
-def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tmp_path: Path) -> None:
+def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tmp_path):
     """A run that was killed leaves none, and neither did the format before."""
     path = tmp_path / "g.sqlite"
     full(path)
@@ -302,7 +300,7 @@ def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tm
         Gradebook(path)
 
 
-def test_of_one_witness_the_earliest_time_of_a_content_stays(tmp_path: Path) -> None:
+def test_of_one_witness_the_earliest_time_of_a_content_stays(tmp_path):
     with Gradebook(tmp_path / "g.sqlite", create=True) as book:
         for at in (200.0, 100.0, 300.0, None):
             book.add_times([SubmittedAt("ada", "doubling", "a", "mtime", at)])
@@ -317,7 +315,7 @@ STUDENTS = 12
 PAGE = 4096
 
 
-def small_book(path: Path) -> None:
+def small_book(path):
     """Something in every table; rows of results that fit on a page each, and some that need more."""
     with Gradebook(path, create=True, writing=True) as book:
         book.set_meta(seed="7", roster="[]", late_policy="x" * 9000)
@@ -338,7 +336,7 @@ def small_book(path: Path) -> None:
         book.note(Decision("", "", "assign", "student 9", "doubling", "hers", "{}", "{}"))
 
 
-def rows(path: Path) -> dict[str, set]:
+def rows(path):
     with Gradebook(path) as book:
         return {
             "results": {(result.key, result.graded_at) for result in book.results()},
@@ -350,7 +348,7 @@ def rows(path: Path) -> dict[str, set]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(tmp_path_factory):
     path = tmp_path_factory.mktemp("whole") / "gradebook.sqlite"
     small_book(path)
     return path
@@ -359,9 +357,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     "how", ["zeros", pytest.param("noise", marks=pytest.mark.soak), "one bit of every cell"]
 )
-def test_with_any_page_damaged_every_override_and_every_other_row_is_there(
-    tmp_path: Path, whole: Path, how: str
-) -> None:
+def test_with_any_page_damaged_every_override_and_every_other_row_is_there(tmp_path, whole, how):
     """No row of these results needs two pages: over all pages each is lost exactly once, and that is said."""
     data, due = whole.read_bytes(), rows(whole)
     assert {len(due["results"]), len(due["times"])} == {STUDENTS}
@@ -397,8 +393,8 @@ def test_with_any_page_damaged_every_override_and_every_other_row_is_there(
 
 @pytest.mark.parametrize("score", [-0.0, 0, 5, 7.5])
 def test_every_number_that_may_be_a_score_is_read_again_and_one_that_is_not_its_own_is_left_out(
-    tmp_path: Path, score: float
-) -> None:
+    tmp_path, score
+):
     """`--score -0` was kept as 0, which failed its checksum in this file and in the salvaged one."""
     path = tmp_path / "gradebook.sqlite"
     with Gradebook(path, create=True, writing=True) as book:
@@ -419,7 +415,7 @@ def test_every_number_that_may_be_a_score_is_read_again_and_one_that_is_not_its_
         assert [str(one.score) for one in book.overrides()] == [str(abs(float(score)))]
 
 
-def test_bytes_that_are_handed_in_stand_nowhere_in_the_file_as_they_are(tmp_path: Path) -> None:
+def test_bytes_that_are_handed_in_stand_nowhere_in_the_file_as_they_are(tmp_path):
     """zlib keeps what it cannot shorten: pages with a row of one's own would be found by ``salvage``."""
     path, noise = tmp_path / "gradebook.sqlite", random.Random(5).randbytes(4 * PAGE)
     with Gradebook(path, create=True, writing=True) as book:
@@ -441,7 +437,7 @@ def test_bytes_that_are_handed_in_stand_nowhere_in_the_file_as_they_are(tmp_path
             assert book.submission("a" * 64) == {"doubling.py": noise}
 
 
-def test_with_a_backup_beside_it_nothing_is_lost(tmp_path: Path, whole: Path) -> None:
+def test_with_a_backup_beside_it_nothing_is_lost(tmp_path, whole):
     data, due = whole.read_bytes(), rows(whole)
     path = tmp_path / "gradebook.sqlite"
     path.write_bytes(data)
@@ -457,7 +453,7 @@ def test_with_a_backup_beside_it_nothing_is_lost(tmp_path: Path, whole: Path) ->
     assert rows(tmp_path / "gone.sqlite") == due
 
 
-def test_without_anything_whole_it_is_refused_and_nothing_is_left(tmp_path: Path, whole: Path) -> None:
+def test_without_anything_whole_it_is_refused_and_nothing_is_left(tmp_path, whole):
     with pytest.raises(NotFoundError):
         salvage(tmp_path / "none.sqlite", tmp_path / "new.sqlite")
     (tmp_path / "noise.sqlite").write_bytes(random.Random(3).randbytes(40 * PAGE))
@@ -468,7 +464,7 @@ def test_without_anything_whole_it_is_refused_and_nothing_is_left(tmp_path: Path
         salvage(whole, whole)
 
 
-def test_hostile_pages_are_read_to_their_end() -> None:
+def test_hostile_pages_are_read_to_their_end():
     """Lengths, pointers and chains that lie: no error, no loop, no memory."""
     dice = random.Random(4)
     for _ in range(300):
@@ -480,7 +476,7 @@ def test_hostile_pages_are_read_to_their_end() -> None:
             pass
 
 
-def test_backups_rotate_and_what_was_deleted_stays_deleted(tmp_path: Path) -> None:
+def test_backups_rotate_and_what_was_deleted_stays_deleted(tmp_path):
     path = tmp_path / "gradebook.sqlite"
     small_book(path)
     with Gradebook(path, writing=True) as book:

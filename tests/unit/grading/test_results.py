@@ -2,16 +2,14 @@
 
 import datetime as dt
 import re
-from pathlib import Path
 
 import msgspec
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result, SubmittedAt
 from course.grading.results.effective import Results, lift, override
-from course.grading.results.late import Policy, lateness, parse_policy, read_policy, read_times, unknown_names
+from course.grading.results.late import lateness, parse_policy, read_policy, read_times, unknown_names
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book, roster_of
 
 DUE = dt.datetime(2026, 12, 1, 23, 59, tzinfo=dt.UTC)
@@ -31,15 +29,15 @@ days = 2
 """
 
 
-def policy(**changes: object) -> Policy:
+def policy(**changes):
     return msgspec.structs.replace(parse_policy(POLICY), **changes)
 
 
-def hand_in(book: Gradebook, student: str, late: float, source: str = "gradescope") -> None:
+def hand_in(book, student, late, source="gradescope"):
     book.add_times([SubmittedAt(student, "doubling", digest(student), source, DUE.timestamp() + late)])
 
 
-def test_the_newest_grading_counts_and_its_state_is_kept_apart(tmp_path: Path) -> None:
+def test_the_newest_grading_counts_and_its_state_is_kept_apart(tmp_path):
     with make_book(tmp_path, {"ada": WRONG, "cy": REFUSED, "dan": BROKEN}) as book:
         book.add(Result(key("ada", version="v2"), RIGHT))
         found = {item.student: item for item in Results(book).all()}
@@ -48,7 +46,7 @@ def test_the_newest_grading_counts_and_its_state_is_kept_apart(tmp_path: Path) -
     assert (found["dan"].score, found["dan"].raw_score, found["dan"].passed) == (None, None, False)
 
 
-def test_an_override_counts_in_place_of_what_is_graded_before_and_after(tmp_path: Path) -> None:
+def test_an_override_counts_in_place_of_what_is_graded_before_and_after(tmp_path):
     with make_book(tmp_path, {"ada": WRONG, "dan": BROKEN}) as book:
         now = override(Results(book), "ada", "doubling", 8.5, "  oral exam ")
         assert (now.score, now.raw_score, now.passed) == (8.5, 0.0, True)
@@ -65,7 +63,7 @@ def test_an_override_counts_in_place_of_what_is_graded_before_and_after(tmp_path
         assert (lifted.score, lifted.override) == (5.0, None)
 
 
-def test_a_score_can_be_set_where_nothing_was_handed_in(tmp_path: Path) -> None:
+def test_a_score_can_be_set_where_nothing_was_handed_in(tmp_path):
     with make_book(tmp_path, {"ada": RIGHT}) as book:
         now = override(Results(book), "ada", "halving", 2, "on paper")
         assert (now.score, now.max_score, now.passed) == (2.0, 2.0, True)
@@ -75,7 +73,7 @@ def test_a_score_can_be_set_where_nothing_was_handed_in(tmp_path: Path) -> None:
         assert [item.exercise for item in Results(book).all("ada")] == ["doubling"]
 
 
-def test_an_impossible_override_changes_nothing(tmp_path: Path) -> None:
+def test_an_impossible_override_changes_nothing(tmp_path):
     with make_book(tmp_path, {"ada": RIGHT}) as book:
         for score in (10.5, -1.0, float("nan")):
             with pytest.raises(UsageError) as caught:
@@ -103,9 +101,7 @@ def test_an_impossible_override_changes_nothing(tmp_path: Path) -> None:
         (7 * DAY + 1, 0.0),
     ],
 )
-def test_lateness_costs_what_the_policy_says_and_never_touches_the_checks(
-    tmp_path: Path, late: float, score: float
-) -> None:
+def test_lateness_costs_what_the_policy_says_and_never_touches_the_checks(tmp_path, late, score):
     with make_book(tmp_path, {"ada": RIGHT}) as book:
         hand_in(book, "ada", late)
         (before,) = Results(book).all()
@@ -120,7 +116,7 @@ def test_lateness_costs_what_the_policy_says_and_never_touches_the_checks(
     assert (by_hand.score, by_hand.penalty, by_hand.late) == (9.5, 0.0, found.late), "it is final"
 
 
-def test_extensions_of_policy_and_roster_give_more_time(tmp_path: Path) -> None:
+def test_extensions_of_policy_and_roster_give_more_time(tmp_path):
     roster = roster_of(tmp_path, "student,extension_days\nada,\nbob,1\ncy,3.5\n")
     with make_book(tmp_path / "out", {"ada": RIGHT, "bob": RIGHT, "cy": RIGHT}) as book:
         for student in ("ada", "bob", "cy"):
@@ -132,7 +128,7 @@ def test_extensions_of_policy_and_roster_give_more_time(tmp_path: Path) -> None:
         assert {item.student: item.late for item in Results(book).all()} == late
 
 
-def test_only_trusted_witnesses_make_anybody_late(tmp_path: Path) -> None:
+def test_only_trusted_witnesses_make_anybody_late(tmp_path):
     with make_book(tmp_path, {"ada": RIGHT}) as book:
         hand_in(book, "ada", 3 * DAY, "mtime")
         book.set_meta(late_policy=POLICY)
@@ -146,7 +142,7 @@ def test_only_trusted_witnesses_make_anybody_late(tmp_path: Path) -> None:
         assert (found.late, found.witness) == (None, "list")
 
 
-def test_the_time_of_another_version_is_not_this_ones(tmp_path: Path) -> None:
+def test_the_time_of_another_version_is_not_this_ones(tmp_path):
     with make_book(tmp_path, {"ada": RIGHT}) as book:
         book.add_times([SubmittedAt("ada", "doubling", "f" * 64, "gradescope", DUE.timestamp() + DAY)])
         book.add_times([SubmittedAt("ada", "doubling", digest("ada"), "canvas-late", None)])
@@ -155,7 +151,7 @@ def test_the_time_of_another_version_is_not_this_ones(tmp_path: Path) -> None:
     assert (found.late, found.flagged_late) == (None, True)
 
 
-def test_points_a_day_and_percent_of_the_score_are_other_ways_to_count() -> None:
+def test_points_a_day_and_percent_of_the_score_are_other_ways_to_count():
     points = policy(percent_per_day=0.0, points_per_day=1.5, at_most_percent=100.0)
     assert points.penalty(2 * DAY, 8.0, 10.0) == 3.0
     assert points.penalty(6 * DAY, 8.0, 10.0) == 8.0
@@ -178,7 +174,7 @@ def test_points_a_day_and_percent_of_the_score_are_other_ways_to_count() -> None
         "= no toml",
     ],
 )
-def test_what_is_no_policy_is_refused_with_the_reason(tmp_path: Path, text: str) -> None:
+def test_what_is_no_policy_is_refused_with_the_reason(tmp_path, text):
     with pytest.raises(UsageError) as caught:
         parse_policy(text, "late.toml")
     assert caught.value.code == "invalid_policy"
@@ -191,7 +187,7 @@ def test_what_is_no_policy_is_refused_with_the_reason(tmp_path: Path, text: str)
         parse_policy("format_version = 2")
 
 
-def test_names_a_policy_has_and_the_gradebook_has_not_are_listed() -> None:
+def test_names_a_policy_has_and_the_gradebook_has_not_are_listed():
     assert unknown_names(parse_policy(POLICY), {"halving": 1}, {"ada"}) == [
         "exercise doubling",
         "student bob",
@@ -199,7 +195,7 @@ def test_names_a_policy_has_and_the_gradebook_has_not_are_listed() -> None:
     assert unknown_names(parse_policy(POLICY), {"doubling": 1}, {"bob"}) == []
 
 
-def test_a_list_of_times_is_read_to_the_second(tmp_path: Path) -> None:
+def test_a_list_of_times_is_read_to_the_second(tmp_path):
     path = tmp_path / "times.csv"
     text = "student,exercise,submitted_at\nada,doubling,2026-12-02T01:00:00+01:00\n"
     for sep in ",;":

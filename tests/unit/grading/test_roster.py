@@ -2,11 +2,9 @@
 
 import csv
 import unicodedata
-from pathlib import Path
 
 import pytest
 
-from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
@@ -52,7 +50,7 @@ CLASSES = {
 }
 
 
-def made(folder: Path, platform: str) -> tuple[Path, Path]:
+def made(folder, platform):
     """A class and its roster."""
     roster, files = CLASSES[platform]
     for name in files:
@@ -62,17 +60,17 @@ def made(folder: Path, platform: str) -> tuple[Path, Path]:
     return folder / "class", path
 
 
-def graded(folder: Path, catalog: Catalog, platform: str):
+def graded(folder, catalog, platform):
     _, roster = made(folder, platform)
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
     return folder / "out", graded_class(folder, catalog, options, grade=right)
 
 
-def rows(path: Path) -> dict[str, dict[str, str]]:
+def rows(path):
     return {row["student"]: row for row in read_csv(path)}
 
 
-def test_who_is_missing_has_a_row_and_a_page_too(tmp_path: Path, catalog: Catalog) -> None:
+def test_who_is_missing_has_a_row_and_a_page_too(tmp_path, catalog):
     out, summary = graded(tmp_path, catalog, "folders")
     assert (summary.missing, summary.strangers, summary.exit_code) == (["bob"], [], 0)
     found = rows(out / "grades.csv")
@@ -87,7 +85,7 @@ def test_who_is_missing_has_a_row_and_a_page_too(tmp_path: Path, catalog: Catalo
         assert faults(page, scripted=page is report) == []
 
 
-def test_missing_is_blank_or_zero_as_told(tmp_path: Path, catalog: Catalog) -> None:
+def test_missing_is_blank_or_zero_as_told(tmp_path, catalog):
     out, _ = graded(tmp_path, catalog, "canvas")
     scores = {}
     for policy in ("blank", "zero"):
@@ -103,7 +101,7 @@ def test_missing_is_blank_or_zero_as_told(tmp_path: Path, catalog: Catalog) -> N
     }
 
 
-def test_an_override_settles_what_is_missing(tmp_path: Path, catalog: Catalog) -> None:
+def test_an_override_settles_what_is_missing(tmp_path, catalog):
     out, _ = graded(tmp_path, catalog, "folders")
     with open_results(out, writing=True) as results:
         assert override(results, "bob", "doubling", 7.0, "oral exam").score == 7.0
@@ -118,7 +116,7 @@ def test_an_override_settles_what_is_missing(tmp_path: Path, catalog: Catalog) -
     assert rows(out / "grades.csv")["bob"]["state"] == "missing"
 
 
-def test_two_spellings_of_an_accent_are_one_student(tmp_path: Path, catalog: Catalog) -> None:
+def test_two_spellings_of_an_accent_are_one_student(tmp_path, catalog):
     name = "zoé"
     put(tmp_path / "class" / unicodedata.normalize("NFD", name) / "doubling.py", b"double = abs\n")
     roster = roster_of(tmp_path, f"student\n{unicodedata.normalize('NFC', name)}\n")
@@ -158,14 +156,14 @@ FOLDERS = {
 
 
 @pytest.mark.parametrize("kind", FOLDERS)
-def test_a_plain_folder_is_found_by_whatever_is_in_one_row_alone(tmp_path: Path, kind: str) -> None:
+def test_a_plain_folder_is_found_by_whatever_is_in_one_row_alone(tmp_path, kind):
     text, names = FOLDERS[kind]
     found = roster_of(tmp_path, text)
     assert {name: found.find(name) for name in names} == dict.fromkeys(names, found.people[0])
     assert [found.find(name) for name in ("Lovel", "lovelace", "x.org", "")] == [None] * 4
 
 
-def test_a_plain_folder_that_two_rows_could_mean_is_nobody(tmp_path: Path) -> None:
+def test_a_plain_folder_that_two_rows_could_mean_is_nobody(tmp_path):
     text = "student,name,login\n1,Ada Lovelace,al\n2,Ada Lovelace,ada\n3,ada,x\n4,al,5\n"
     found = roster_of(tmp_path, text)
     assert [found.find(name) for name in ("Ada Lovelace", "ada", "al")] == [None] * 3
@@ -176,7 +174,7 @@ def test_a_plain_folder_that_two_rows_could_mean_is_nobody(tmp_path: Path) -> No
     )  # fmt: skip
 
 
-def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catalog: Catalog) -> None:
+def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path, catalog):
     submissions, roster = made(tmp_path, "folders")
     roster.write_text(CANVAS, "utf-8")
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
@@ -201,7 +199,7 @@ def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catal
     assert "the columns student (the name in the gradebook) and canvas_id" in stopped.value.help
 
 
-def test_a_download_is_told_which_of_its_keys_was_looked_for(tmp_path: Path) -> None:
+def test_a_download_is_told_which_of_its_keys_was_looked_for(tmp_path):
     found = roster_of(tmp_path, MOODLE)
     downloads = {"Eve_7": PlatformIdentity("moodle", "7", "Eve"), "101": PlatformIdentity("canvas", "101")}
     assert found.compared(["Eve_7"], downloads).endswith(
@@ -214,9 +212,7 @@ def test_a_download_is_told_which_of_its_keys_was_looked_for(tmp_path: Path) -> 
 @pytest.mark.parametrize("delimiter", [",", ";"])
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 @pytest.mark.parametrize("form", CANVAS_FORMS)
-def test_every_form_of_canvas_gradebook_is_read(
-    tmp_path: Path, form: str, encoding: str, delimiter: str
-) -> None:
+def test_every_form_of_canvas_gradebook_is_read(tmp_path, form, encoding, delimiter):
     """Names in one column or two, ids as far as they are shown, cells parted as the user's language does it.
 
     Source: canvas-lms/lib/gradebook_exporter.rb, ``csv_data``; canvas-lms/lib/csv_with_i18n.rb,
@@ -230,7 +226,7 @@ def test_every_form_of_canvas_gradebook_is_read(
     )
 
 
-def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
+def test_what_platforms_hand_out_is_read_unchanged(tmp_path):
     """Gradescope's needs a name, in one column or two, and an e-mail; ids, sections and roles are optional.
 
     Source: Gradescope help, "Adding Students and Staff"; canvas-lms/lib/gradebook_exporter.rb;
@@ -246,7 +242,7 @@ def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
     assert ada == Person("ada@x.org", "Ada Lovelace", "ada@x.org")
 
 
-def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog: Catalog) -> None:
+def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path, catalog):
     submissions, _ = made(tmp_path, "folders")
     (submissions / "eva").mkdir()
     options = RunOptions(terms=Terms(), seed=1)
@@ -268,7 +264,7 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog
 # -- a file of an instructor's own ------------------------------------------------------------------------
 
 
-def test_a_roster_is_read_with_quotes_marks_and_any_alphabet(tmp_path: Path) -> None:
+def test_a_roster_is_read_with_quotes_marks_and_any_alphabet(tmp_path):
     text = '\ufeffname,student,canvas_id\r\n"漢字, é ""x""\nline two",=ada,42\r\n'
     (person,) = roster_of(tmp_path, text).people
     assert (person.student, person.name, person.canvas_id) == ("=ada", '漢字, é "x"\nline two', "42")
@@ -297,14 +293,14 @@ def test_a_roster_is_read_with_quotes_marks_and_any_alphabet(tmp_path: Path) -> 
         ("Student,ID\nAda,7\nBob,7\n", "canvas_id '7' is in two rows"),
     ],
 )
-def test_what_is_no_roster_is_refused_with_the_row(tmp_path: Path, text: str, reason: str) -> None:
+def test_what_is_no_roster_is_refused_with_the_row(tmp_path, text, reason):
     with pytest.raises(UsageError) as caught:
         roster_of(tmp_path, text)
     assert caught.value.code == "invalid_roster"
     assert reason in caught.value.message
 
 
-def test_a_space_at_the_end_of_an_id_is_nobody_s_name_unless_a_folder_has_it(tmp_path: Path) -> None:
+def test_a_space_at_the_end_of_an_id_is_nobody_s_name_unless_a_folder_has_it(tmp_path):
     roster = roster_of(tmp_path, "student,name\n ada ,Ada\nbob,Bob\nbob ,Robert\n")
     names = {
         name: [row.name for row in roster.rows(name)] for name in ("ada", " ada ", "bob", "bob ", " bob")
@@ -314,7 +310,7 @@ def test_a_space_at_the_end_of_an_id_is_nobody_s_name_unless_a_folder_has_it(tmp
     }  # fmt: skip
 
 
-def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
+def test_students_are_found_by_id_and_never_guessed(tmp_path):
     roster = roster_of(
         tmp_path,
         "student,name,email,canvas_id,sis_user_id,moodle_key\n"
@@ -327,7 +323,7 @@ def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
         "s2": PlatformIdentity("gradescope", "s2", "Bob", "", "s2"),
         "Bob": PlatformIdentity("gradescope", "c@x.org", "Bob", "C@x.org", ""),
     }
-    assert roster.find("a1").student == "a1"  # type: ignore[union-attr]
+    assert roster.find("a1").student == "a1"
     names = {name: roster.find(name, who) for name, who in downloads.items()}
     assert {name: found and found.student for name, found in names.items()} == {
         "lovelace_11": "a1", "Ada Lovelace_900": "a1", "Bob_901": None, "s2": "b1", "Bob": "b2",

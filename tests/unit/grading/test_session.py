@@ -2,7 +2,6 @@
 
 import os
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 
 import msgspec
@@ -10,24 +9,21 @@ import numpy as np
 import pytest
 
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise
 from course.errors import MissingCapabilityError
 from course.isolation.levels import Deadline
-from course.isolation.session import Connection
 from course.scoring import kit
-from course.scoring.checks.collected import Check
 from course.scoring.failures import CheckFailed
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import RemoteSubmission
 from course.scoring.values import plain
-from course.scoring.verdict import CheckResult, Status, Verdict, finite, for_student
+from course.scoring.verdict import Status, finite, for_student
 from tests.contracts.boundary.levels import require_level
 
 HANGS = b"\ndef double(x):\n    while True:\n        pass\n"
 
 
-def busy_for(seconds: float) -> bytes:
+def busy_for(seconds):
     """A ``double`` that takes so much of the processor."""
     return f"""
 import time
@@ -38,14 +34,12 @@ def double(x):
 """.encode()
 
 
-def grade(session: GradingSession, source: bytes | str) -> Verdict:
+def grade(session, source):
     raw = source.encode() if isinstance(source, str) else source
     return session.grade(Submission({"doubling.py": raw}))
 
 
-def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(
-    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(session, solution, monkeypatch):
     checks = sum(check.task == "double" for check in session.checks)
     monkeypatch.setattr("course.scoring.remote.BUDGET_S", 0.3 * checks)  # each waits for so long
     verdict = grade(session, solution + HANGS)
@@ -53,13 +47,11 @@ def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(
     assert {str(check.status) for check in results(verdict, "doublings")} == {"pass"}
 
 
-def test_a_search_for_the_cause_takes_no_time_from_later_checks_up_to_its_own(
-    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    allowed: list[float] = []
+def test_a_search_for_the_cause_takes_no_time_from_later_checks_up_to_its_own(session, solution, monkeypatch):
+    allowed = []
 
     class Noted(Deadline):
-        def __init__(self, seconds: float, wall: float | None = None) -> None:
+        def __init__(self, seconds, wall=None):
             allowed.append(seconds)
             super().__init__(seconds, wall)
 
@@ -67,7 +59,7 @@ def test_a_search_for_the_cause_takes_no_time_from_later_checks_up_to_its_own(
     monkeypatch.setattr("course.scoring.remote.BUDGET_S", 0.56)  # half of it is for one task
     monkeypatch.setattr("course.scoring.remote.SEARCH_S", 0.15)
 
-    def three_checks(remote: RemoteSubmission) -> list[float]:
+    def three_checks(remote):
         for _ in range(3):
             remote.begin_check("double")
             remote.call("double", 1.0)
@@ -80,14 +72,12 @@ def test_a_search_for_the_cause_takes_no_time_from_later_checks_up_to_its_own(
     assert 0.02 < first - third < 0.1  # and of the next one half
 
 
-def test_what_a_search_asks_of_a_function_is_measured(
-    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    given_back: list[float] = []
-    both: list[float] = []
+def test_what_a_search_asks_of_a_function_is_measured(session, solution, monkeypatch):
+    given_back = []
+    both = []
     monkeypatch.setattr(RemoteSubmission, "not_charged", lambda _, seconds: given_back.append(seconds))
 
-    def check(_: object, one: Check, submission: RemoteSubmission) -> BaseException | None:
+    def check(_, one, submission):
         """The first check of double: it asks once for itself, and once to find a cause."""
         submission.call("double", 1.0)
         try:
@@ -105,8 +95,8 @@ def test_what_a_search_asks_of_a_function_is_measured(
 
 
 def test_an_exercise_has_the_time_it_asks_for_and_a_quarter_once_a_function_ran_out_of_it(
-    catalog: Catalog, doubling: Exercise, session: GradingSession, solution: bytes
-) -> None:
+    catalog, doubling, session, solution
+):
     twice = msgspec.structs.replace(doubling, time=2.0)
     with GradingSession(twice, catalog, scope="full", terms=Terms(timeout=0.3)) as slower:
         verdict = grade(slower, solution + HANGS)
@@ -121,9 +111,7 @@ def test_an_exercise_has_the_time_it_asks_for_and_a_quarter_once_a_function_ran_
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="processes are not kept on processors here")
-def test_only_while_it_grades_does_a_session_stay_on_one_processor(
-    catalog: Catalog, doubling: Exercise, solution: bytes
-) -> None:
+def test_only_while_it_grades_does_a_session_stay_on_one_processor(catalog, doubling, solution):
     free = os.sched_getaffinity(0)
     first, second = (GradingSession(doubling, catalog, processor=number) for number in range(2))
     assert os.sched_getaffinity(0) == free
@@ -136,11 +124,11 @@ def test_only_while_it_grades_does_a_session_stay_on_one_processor(
     assert len(set.union(*seen)) == min(2, len(free))
 
 
-def results(verdict: Verdict, task: str) -> list[CheckResult]:
+def results(verdict, task):
     return [check for check in verdict.checks if check.task == task]
 
 
-def test_an_exception_names_the_students_own_line(session: GradingSession, solution: bytes) -> None:
+def test_an_exception_names_the_students_own_line(session, solution):
     source = solution + b"\ndef double(x):\n    return 1 / 0\n"
     check = results(grade(session, source), "double")[0]
     assert check.status is Status.ERROR
@@ -165,22 +153,18 @@ def test_an_exception_names_the_students_own_line(session: GradingSession, solut
         ("raise KeyboardInterrupt", Status.ERROR),
     ],
 )
-def test_each_way_of_ending_has_its_status_and_spares_the_other_task(
-    session: GradingSession, solution: bytes, body: str, status: Status
-) -> None:
+def test_each_way_of_ending_has_its_status_and_spares_the_other_task(session, solution, body, status):
     verdict = grade(session, solution + f"\ndef double(x):\n    {body}\n".encode())
     assert {check.status for check in results(verdict, "double")} == {status}
     assert all(check.status is Status.PASS for check in results(verdict, "doublings"))
     assert all(check.message and check.help for check in results(verdict, "double"))
 
 
-def test_what_a_file_lacks_when_it_is_loaded_again_is_no_outcome_of_its_own(
-    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_a_file_lacks_when_it_is_loaded_again_is_no_outcome_of_its_own(session, solution, monkeypatch):
     """By then its code may know a hidden number, and would tell it by the function that is gone."""
     load, loaded = RemoteSubmission._loaded, []
 
-    def fewer(remote: RemoteSubmission) -> Connection:
+    def fewer(remote):
         loaded.append(connection := load(remote))
         if len(loaded) > 1:
             connection.functions -= {"doublings"}
@@ -192,7 +176,7 @@ def test_what_a_file_lacks_when_it_is_loaded_again_is_no_outcome_of_its_own(
     assert not any("no function" in check.message for check in verdict.checks)
 
 
-def test_of_one_file_only_so_many_bytes_of_results_are_kept() -> None:
+def test_of_one_file_only_so_many_bytes_of_results_are_kept():
     remote = RemoteSubmission.__new__(RemoteSubmission)
     remote.heard, remote._room = [], 2000
     for value in ([np.zeros(100), {"a": "text"}], np.zeros(200), 1.0):
@@ -230,8 +214,8 @@ def test_of_one_file_only_so_many_bytes_of_results_are_kept() -> None:
     ids=lambda value: str(value[:30]),
 )
 def test_what_cannot_be_loaded_is_ungradable_with_a_reason_and_what_to_do(
-    session: GradingSession, source: bytes, code: str, said: str, advice: str
-) -> None:
+    session, source, code, said, advice
+):
     verdict = grade(session, source)
     assert verdict.state == "ungradable"
     assert (verdict.score, verdict.max_score, verdict.checks) == (0, 10, ())
@@ -274,16 +258,14 @@ LEFT_OUT = {
 
 
 @pytest.mark.parametrize("line", LEFT_OUT)
-def test_a_line_that_works_at_home_alone_costs_nothing_and_is_told_with_its_reason(
-    session: GradingSession, solution: bytes, line: str
-) -> None:
+def test_a_line_that_works_at_home_alone_costs_nothing_and_is_told_with_its_reason(session, solution, line):
     require_level("L3")
     verdict = grade(session, line.encode() + b"\n" + solution)
     assert verdict.score == verdict.max_score
     assert any(LEFT_OUT[line] in note for note in verdict.warnings), verdict.warnings
 
 
-def test_what_a_check_says_of_a_function_that_is_no_python_is_no_note(session: GradingSession) -> None:
+def test_what_a_check_says_of_a_function_that_is_no_python_is_no_note(session):
     verdict = grade(
         session, b"def double(x):\n    return (x\n\n\ndef doublings(x, n):\n    return [x] * n\n\n\na = 2h\n"
     )
@@ -306,9 +288,7 @@ def test_what_a_check_says_of_a_function_that_is_no_python_is_no_note(session: G
     ],
     ids=["a plot and its package", "a timed cell of an exported notebook", "a future import"],
 )
-def test_what_belongs_to_work_at_home_is_worth_no_word(
-    session: GradingSession, solution: bytes, rewrite: Callable[[str], str]
-) -> None:
+def test_what_belongs_to_work_at_home_is_worth_no_word(session, solution, rewrite):
     verdict = grade(session, rewrite(solution.decode()))
     assert (verdict.score, verdict.warnings) == (verdict.max_score, ())
 
@@ -321,9 +301,7 @@ def test_what_belongs_to_work_at_home_is_worth_no_word(
         ("pylab", "plotting", "Import each name from the module that has it."),
     ],
 )
-def test_a_name_that_a_star_import_would_bring_leads_to_its_line(
-    session: GradingSession, package: str, name: str, advice: str
-) -> None:
+def test_a_name_that_a_star_import_would_bring_leads_to_its_line(session, package, name, advice):
     verdict = grade(session, f"from {package} import *\ndef double(x):\n    return {name}(x)\n")
     found = next(check for check in verdict.checks if check.diagnosis == "RAISED")
     assert (
@@ -342,9 +320,7 @@ def test_a_name_that_a_star_import_would_bring_leads_to_its_line(
         ("def g():\n    try: pass\n    except ValueError, TypeError: pass", "3.14"),
     ],
 )
-def test_what_a_newer_python_reads_is_told_with_both_versions(
-    session: GradingSession, solution: bytes, line: str, version: str
-) -> None:
+def test_what_a_newer_python_reads_is_told_with_both_versions(session, solution, line, version):
     if sys.version_info >= tuple(map(int, version.split("."))):
         pytest.skip("this Python reads it")
     verdict = grade(session, solution + b"\n" + line.encode() + b"\n")
@@ -354,9 +330,7 @@ def test_what_a_newer_python_reads_is_told_with_both_versions(
     assert any(told in note for note in verdict.warnings), verdict.warnings
 
 
-def test_an_import_that_is_not_allowed_costs_only_the_tasks_that_need_it(
-    session: GradingSession, solution: bytes
-) -> None:
+def test_an_import_that_is_not_allowed_costs_only_the_tasks_that_need_it(session, solution):
     plots = (
         b"import matplotlib.pyplot as plt\n" + solution + b"\nfigure, axes = plt.subplots()\naxes.plot([1])\n"
     )
@@ -369,16 +343,14 @@ def test_an_import_that_is_not_allowed_costs_only_the_tasks_that_need_it(
     assert 0 < verdict.score < 10
 
 
-def test_a_check_that_requires_a_failed_one_is_skipped_and_names_it(
-    session: GradingSession, solution: bytes
-) -> None:
+def test_a_check_that_requires_a_failed_one_is_skipped_and_names_it(session, solution):
     verdict = grade(session, solution + b"\ndef doublings(x, n):\n    return [x]\n")
     by_id = {check.id: check for check in verdict.checks}
     assert by_id["doublings_values"].status is Status.SKIP
     assert by_id["doublings_values"].blocked_by == "doublings_length"
 
 
-def test_hidden_findings_lose_their_values_for_the_student(session: GradingSession, solution: bytes) -> None:
+def test_hidden_findings_lose_their_values_for_the_student(session, solution):
     wrong = solution + b"\ndef double(x):\n    print('SEEN', x)\n    return x\n"
     hidden = [
         check for check in grade(session, wrong).checks if check.visibility == "hidden" and not check.points
@@ -394,9 +366,7 @@ def test_hidden_findings_lose_their_values_for_the_student(session: GradingSessi
         assert check.help
 
 
-def test_a_fault_of_a_check_is_never_the_students_zero(
-    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_fault_of_a_check_is_never_the_students_zero(session, solution, monkeypatch):
     monkeypatch.setattr(session._checks, "run", lambda *_: RuntimeError("a bug of ours"))
     verdict = grade(session, solution)
     assert verdict.state == "grader_error"
@@ -409,23 +379,23 @@ def test_a_fault_of_a_check_is_never_the_students_zero(
     [({"graders": None, "solutions": None}, "hidden graders"), ({"solutions": None}, "model solutions")],
 )
 def test_hidden_checks_need_a_checkout_with_the_solutions_that_they_compare_with(
-    catalog: Catalog, doubling: Exercise, lacks: dict[str, None], said: str
-) -> None:
+    catalog, doubling, lacks, said
+):
     """Without these each of them would fail on honest work, for a fault that is ours."""
     bare = Catalog(replace(catalog.content, **lacks))
     with pytest.raises(MissingCapabilityError, match=said):
         GradingSession(doubling, bare, scope="full")
 
 
-def breaks_on_wrong_results(check: Check, remote: RemoteSubmission) -> BaseException | None:
+def breaks_on_wrong_results(check, remote):
     """A check whose own code cannot stand what a wrong submission returns."""
     value = remote.call("double", 3.0)
     return None if value == 6.0 else ZeroDivisionError("in the check")
 
 
 def test_a_check_that_breaks_on_a_students_value_only_is_failed_and_told_to_its_author(
-    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    session, solution, monkeypatch
+):
     monkeypatch.setattr(session._checks, "run", breaks_on_wrong_results)
     session._sound.clear()
     verdict = grade(session, solution + b"\ndef double(x):\n    return float('nan')\n")
@@ -440,8 +410,8 @@ def test_a_check_that_breaks_on_a_students_value_only_is_failed_and_told_to_its_
 
 
 def test_at_home_a_check_that_breaks_says_that_nothing_tells_whose_fault_it_is(
-    catalog: Catalog, doubling: Exercise, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    catalog, doubling, solution, monkeypatch
+):
     monkeypatch.setattr(catalog, "content", replace(catalog.content, solutions=None, graders=None))
     with GradingSession(doubling, catalog, terms=Terms(timeout=1.0)) as home:
         monkeypatch.setattr(home._checks, "run", breaks_on_wrong_results)
@@ -452,9 +422,7 @@ def test_at_home_a_check_that_breaks_says_that_nothing_tells_whose_fault_it_is(
     assert "a list or a tuple with None in it" in verdict.checks[0].message
 
 
-def test_a_session_has_the_seed_and_the_checks_that_were_asked_for(
-    catalog: Catalog, doubling: Exercise, session: GradingSession, solution: bytes
-) -> None:
+def test_a_session_has_the_seed_and_the_checks_that_were_asked_for(catalog, doubling, session, solution):
     verdict = session.grade(Submission({"doubling.py": solution}), only=["doublings_values"])
     assert {check.id for check in verdict.checks} == {"doublings_length", "doublings_values"}
     drawn = []
@@ -466,9 +434,7 @@ def test_a_session_has_the_seed_and_the_checks_that_were_asked_for(
     assert drawn[0] == drawn[1] != drawn[2]
 
 
-def test_a_search_for_the_mistake_that_breaks_leaves_the_checks_own_finding(
-    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_search_for_the_mistake_that_breaks_leaves_the_checks_own_finding(session, solution, monkeypatch):
     monkeypatch.setattr(kit.companion("doubling", "diagnosis"), "of_double", lambda _: 1 / 0)
     verdict = grade(session, solution + b"\ndef double(x):\n    return x\n")
     check = next(check for check in verdict.checks if check.id == "double_of_three")
@@ -478,12 +444,9 @@ def test_a_search_for_the_mistake_that_breaks_leaves_the_checks_own_finding(
 
 
 @pytest.mark.parametrize(
-    "returned",
-    ["10**400", "2**63", "-2**64", "1e300", "np.uint64(2**64 - 1)", "{2: 10**5000}", "[2**70]"],
+    "returned", ["10**400", "2**63", "-2**64", "1e300", "np.uint64(2**64 - 1)", "{2: 10**5000}", "[2**70]"]
 )
-def test_no_number_is_too_large_for_a_verdict(
-    session: GradingSession, solution: bytes, returned: str
-) -> None:
+def test_no_number_is_too_large_for_a_verdict(session, solution, returned):
     verdict = grade(
         session, solution + f"\nimport numpy as np\ndef double(x):\n    return {returned}\n".encode()
     )
@@ -492,7 +455,7 @@ def test_no_number_is_too_large_for_a_verdict(
     msgspec.json.encode(finite(msgspec.to_builtins(verdict)))
 
 
-def test_a_finding_holds_whole_numbers_of_any_size() -> None:
+def test_a_finding_holds_whole_numbers_of_any_size():
     class Odd(int):
         pass
 
@@ -503,7 +466,7 @@ def test_a_finding_holds_whole_numbers_of_any_size() -> None:
     assert plain(np.longdouble(2.5)) == 2.5
 
 
-def test_a_hostile_value_does_not_swell_a_finding(session: GradingSession, solution: bytes) -> None:
+def test_a_hostile_value_does_not_swell_a_finding(session, solution):
     bushy = b"""
 def double(x):
     tree = [0.5] * 20

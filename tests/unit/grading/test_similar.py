@@ -5,7 +5,6 @@ import itertools
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -23,7 +22,6 @@ from course.grading.similar import (
     Group,
     Pair,
     Prints,
-    Similar,
     _blocks,
     _groups,
     _pairs,
@@ -99,7 +97,7 @@ class Helper:
 """
 
 
-def class_of(tmp_path: Path, sources: dict[str, str | bytes]):
+def class_of(tmp_path, sources):
     book = make_book(tmp_path, {})
     for student, source in sources.items():
         content = source if isinstance(source, bytes) else source.encode()
@@ -124,13 +122,13 @@ BAD = {
 
 
 @pytest.fixture(scope="module")
-def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def ran(tmp_path_factory):
     """What a source would leave, were it run."""
     return tmp_path_factory.mktemp("ran") / "ran"
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog, ran: Path) -> Similar:
+def found(tmp_path_factory, catalog, ran):
     """A copy under hostile names, the stub, modules that a student has of the course, and what is no code."""
     stub = catalog.exercise("doubling").stub_path.read_text("utf-8")
     sources = {
@@ -147,9 +145,7 @@ def found(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog, ran: Path)
         return compare(Results(book), catalog, (), at_least=0.6)
 
 
-def test_copies_of_a_student_or_of_what_the_course_itself_has_are_found_and_nothing_else(
-    found: Similar, ran: Path
-) -> None:
+def test_copies_of_a_student_or_of_what_the_course_itself_has_are_found_and_nothing_else(found, ran):
     """Whatever the names, the layout and the order; of the course not only this exercise and the textbook."""
     pairs = {(pair.first.label, pair.second.label): pair for pair in found.pairs}
     assert pairs.keys() == {
@@ -162,13 +158,13 @@ def test_copies_of_a_student_or_of_what_the_course_itself_has_are_found_and_noth
     assert not ran.exists(), "a source is never run"
 
 
-def test_sources_that_hurt_the_parser_or_are_too_long_are_named_and_the_rest_compared(found: Similar) -> None:
+def test_sources_that_hurt_the_parser_or_are_too_long_are_named_and_the_rest_compared(found):
     assert {f"{name} doubling" for name in ("syntax", "nul", "parentheses", "long")} <= set(found.unreadable)
     assert set(found.unreadable) <= {f"{name} doubling" for name in BAD}
     assert found.compared + len(found.unreadable) == 8 + len(BAD)
 
 
-def test_the_page_shows_text_as_text(found: Similar) -> None:
+def test_the_page_shows_text_as_text(found):
     text = page(found)
     assert "<script" not in text
     assert "\u202e" not in text
@@ -180,9 +176,7 @@ def test_the_page_shows_text_as_text(found: Similar) -> None:
     assert 'href="#p1-b-1"' in text
 
 
-def test_what_the_stub_gave_is_nobodys_and_what_lies_beside_it_is_the_courses(
-    tmp_path: Path, copied: Path
-) -> None:
+def test_what_the_stub_gave_is_nobodys_and_what_lies_beside_it_is_the_courses(tmp_path, copied):
     exercise = copied / "exercises" / "doubling"
     (exercise / "doubling.py").write_text(ORIGINAL, "utf-8")
     (exercise / "helper.py").write_text(OTHER, "utf-8")
@@ -192,7 +186,7 @@ def test_what_the_stub_gave_is_nobodys_and_what_lies_beside_it_is_the_courses(
     assert [(pair.first.label, pair.second.label) for pair in pairs] == [("ada", "the exercise's helper.py")]
 
 
-def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog) -> None:
+def test_copies_do_not_keep_others_off_the_list(tmp_path, catalog):
     """Each copy is listed with the first alone, and that one with whoever is nearly the same.
 
     Of more copies than may propose a pair, too, and where the first is the course's own.
@@ -217,9 +211,7 @@ def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog
     assert table[1][1:] == ["doubling", "9", f"{100 * group.share:.0f}\u00a0%"]
 
 
-def test_right_solutions_share_little_with_the_model_solution_and_with_each_other(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_right_solutions_share_little_with_the_model_solution_and_with_each_other(monkeypatch):
     """The default of ``--share`` lies between them and a copy, and docs/instructor.md says it."""
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     catalog, with_model, with_others = Catalog(), [], []
@@ -241,8 +233,8 @@ def test_right_solutions_share_little_with_the_model_solution_and_with_each_othe
     assert max(with_others) < 0.5
 
 
-def test_pairs_make_groups_by_exercise_and_the_courses_own_code_connects_nobody() -> None:
-    def pair(first: str, second: str, share: float, exercise: str = "doubling") -> Pair:
+def test_pairs_make_groups_by_exercise_and_the_courses_own_code_connects_nobody():
+    def pair(first, second, share, exercise="doubling"):
         sides = (Document(label, "", Prints({}, "", 0), own=label == "own") for label in (first, second))
         return Pair(exercise, *sides, share, (), 1)
 
@@ -256,17 +248,17 @@ def test_pairs_make_groups_by_exercise_and_the_courses_own_code_connects_nobody(
         ]
 
 
-def _backwards(size: int) -> Callable[[], int]:
+def _backwards(size):
     """Two who hand in the same functions, one of them backwards: nothing continues anything."""
     passages = [((10 * n, 10 * n + 1), (10 * (size - n), 10 * (size - n) + 1)) for n in range(size)]
     return lambda: len(_blocks(passages))
 
 
-def test_passages_in_reversed_order_are_not_joined() -> None:
+def test_passages_in_reversed_order_are_not_joined():
     assert _backwards(500)() == 500
 
 
-def _crowded(size: int) -> Callable[[], int]:
+def _crowded(size):
     """One who hands in all on one line, and one who has a gap after each passage of it."""
     passages = [((1, 1), (10 * n, 10 * n + 1)) for n in range(size)]
     return lambda: len(_blocks(passages))
@@ -274,13 +266,11 @@ def _crowded(size: int) -> Callable[[], int]:
 
 @pytest.mark.soak
 @pytest.mark.parametrize("passages", [_backwards, _crowded])
-def test_passages_that_nothing_joins_are_compared_in_time_that_grows_with_their_number(
-    passages: Callable[[int], Callable[[], int]],
-) -> None:
+def test_passages_that_nothing_joins_are_compared_in_time_that_grows_with_their_number(passages):
     assert growth(passages, 500) < LIMIT
 
 
-def test_a_process_that_parses_ends_when_its_time_is_used_up() -> None:
+def test_a_process_that_parses_ends_when_its_time_is_used_up():
     """By CPU time: on a busy machine an honest source has six times as long by the wall clock."""
     spins = "from course.grading.pipes import limit_cpu\nlimit_cpu(0)\nwhile True:\n    pass"
     done = subprocess.run([sys.executable, "-c", spins], check=False)
@@ -292,7 +282,7 @@ PASSAGE = fingerprints(("def f():\n" + BLOCK).encode())
 
 @settings(max_examples=30)
 @given(st.lists(st.sampled_from(["x = 1", "y += f(x)", "if x: pass", "z = [q for q in x]"]), max_size=12))
-def test_a_long_shared_passage_is_never_missed(before: list[str]) -> None:
+def test_a_long_shared_passage_is_never_missed(before):
     """Winnowing's promise: any passage of RUN + WINDOW - 1 nodes leaves a common mark."""
     one = PASSAGE
     other = fingerprints(("\n".join(before) + "\ndef g():\n" + BLOCK).encode())

@@ -1,14 +1,10 @@
 """Time is counted where it is spent: a busy machine costs nobody points, and nobody gets time for nothing."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
 from time import monotonic, sleep
-from typing import Any
 
 import pytest
 
@@ -26,18 +22,18 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="as
 class Fake:
     """A process whose clock and state are set by hand."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.cpu = 0.0
         self.sleeps = False
 
-    def cpu_s(self) -> float:
+    def cpu_s(self):
         return self.cpu
 
-    def asleep(self) -> bool:
+    def asleep(self):
         return self.sleeps
 
 
-def test_waiting_for_a_processor_costs_nothing() -> None:
+def test_waiting_for_a_processor_costs_nothing():
     fake, deadline = Fake(), Deadline(0.2, wall=60)
     deadline.watch(fake)
     sleep(0.4)
@@ -47,7 +43,7 @@ def test_waiting_for_a_processor_costs_nothing() -> None:
     assert deadline.passed()
 
 
-def test_sleeping_while_the_grader_waits_counts() -> None:
+def test_sleeping_while_the_grader_waits_counts():
     fake, deadline = Fake(), Deadline(0.5, wall=60)
     fake.sleeps = True
     deadline.watch(fake)
@@ -58,7 +54,7 @@ def test_sleeping_while_the_grader_waits_counts() -> None:
     assert 3 <= looks <= 6  # a look counts for what has gone by since the last one, at most two ticks
 
 
-def test_what_several_workers_use_adds_up() -> None:
+def test_what_several_workers_use_adds_up():
     deadline = Deadline(1.0, wall=60)
     for _ in range(3):
         fake = Fake()
@@ -69,7 +65,7 @@ def test_what_several_workers_use_adds_up() -> None:
     assert not deadline.passed()
 
 
-def test_the_wall_clock_has_the_last_word() -> None:
+def test_the_wall_clock_has_the_last_word():
     deadline = Deadline(100, wall=0.1)
     deadline.watch(Fake())
     sleep(0.15)
@@ -78,7 +74,7 @@ def test_the_wall_clock_has_the_last_word() -> None:
     assert not deadline.passed()
 
 
-def test_nothing_need_be_asked_before_it_can_have_passed() -> None:
+def test_nothing_need_be_asked_before_it_can_have_passed():
     fake, deadline = Fake(), Deadline(5.0)
     deadline.watch(fake)
     fake.cpu = 2.0
@@ -86,7 +82,7 @@ def test_nothing_need_be_asked_before_it_can_have_passed() -> None:
     assert deadline.earliest - monotonic() == pytest.approx(3.0, abs=0.5)
 
 
-def test_the_clock_of_another_process_is_that_process_s_own() -> None:
+def test_the_clock_of_another_process_is_that_process_s_own():
     with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as busy:
         clock = ProcessClock(busy.pid)
         while clock.cpu_s() < 0.2:
@@ -102,7 +98,7 @@ def test_the_clock_of_another_process_is_that_process_s_own() -> None:
 
 
 @contextlib.contextmanager
-def _crowd(processor: int, size: int) -> Iterator[None]:
+def _crowd(processor, size):
     """So many processes that want nothing but this processor."""
     program = f"import os\nos.sched_setaffinity(0, {{{processor}}})\nos.write(1, b'.')\nwhile True: pass"
     with contextlib.ExitStack() as stack:
@@ -132,7 +128,7 @@ def spins():
 
 
 @pytest.mark.parametrize("level", soak_unless(["L3"], ["L1", "L2", "L3"]))
-def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level: str) -> None:
+def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level):
     require_level(level)
     processor = min(os.sched_getaffinity(0))
     before = os.sched_getaffinity(0)
@@ -140,11 +136,11 @@ def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level: str)
         stack.callback(os.sched_setaffinity, 0, before)
         # Whatever starts a worker hands its processor on, as in a session.
         os.sched_setaffinity(0, {processor})
-        found: Any = spawner(Level(level), ("numpy",))
+        found = spawner(Level(level), ("numpy",))
         stack.callback(found.close)
         stack.enter_context(_crowd(processor, 8))
 
-        def connected() -> Connection:
+        def connected():
             made = Connection(found, {"a.py": _WORK.encode()}, "a.py", Deadline(10))
             stack.callback(made.close)
             return made
@@ -180,6 +176,6 @@ found.close()
 
 
 @pytest.mark.parametrize(("level", "user"), LEVELS_AND_USERS)
-def test_time_is_told_whoever_the_grader_is(level: str, user: str) -> None:
+def test_time_is_told_whoever_the_grader_is(level, user):
     require_level(level)
     assert run_as(user, IN_WORKERS + _AS_USER, level, _WORK).split() == ["spins", "sleeps"]

@@ -1,10 +1,5 @@
 """Sandboxes that one session takes over from another: those of its kind, that still keep a canary in."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-from typing import Any
-
 import pytest
 
 from course.isolation import probe
@@ -12,7 +7,7 @@ from course.isolation.levels import Level
 from course.isolation.probe import kept_sandboxes, open_sandbox
 
 
-def sandbox_for(*arguments: Any, **limits: Any) -> Any:
+def sandbox_for(*arguments, **limits):
     return open_sandbox(*arguments, **limits)[0]
 
 
@@ -21,25 +16,25 @@ class Sandbox:
 
     level = Level.L2
 
-    def __init__(self) -> None:
-        self.told: list[str] = []
+    def __init__(self):
+        self.told = []
         self.proves = True
 
-    def spawn(self) -> None:
+    def spawn(self):
         self.told.append("spawned")
 
-    def tidy(self) -> None:
+    def tidy(self):
         self.told.append("tidied")
 
-    def close(self) -> None:
+    def close(self):
         self.told.append("closed")
 
 
 @pytest.fixture
-def opened(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Sandbox]]:
-    made: list[Sandbox] = []
+def opened(monkeypatch):
+    made = []
 
-    def new(*_: object, **__: object) -> Sandbox:
+    def new(*_, **__):
         made.append(Sandbox())
         return made[-1]
 
@@ -49,7 +44,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Sandbox]]:
     assert {one.told.count("closed") for one in made} == {1}
 
 
-def test_one_session_takes_over_from_another_of_its_kind(opened: list[Sandbox]) -> None:
+def test_one_session_takes_over_from_another_of_its_kind(opened):
     with kept_sandboxes():
         for _ in range(3):
             sandbox = sandbox_for(("numpy",))
@@ -65,7 +60,7 @@ def test_one_session_takes_over_from_another_of_its_kind(opened: list[Sandbox]) 
     assert len(opened) == 5, "none is kept unless that was asked for"
 
 
-def test_a_session_goes_to_the_processor_on_which_the_sandbox_was_opened(opened: list[Sandbox]) -> None:
+def test_a_session_goes_to_the_processor_on_which_the_sandbox_was_opened(opened):
     with kept_sandboxes():
         first, there = open_sandbox(("numpy",), processor=1)
         first.close()
@@ -77,7 +72,7 @@ def test_a_session_goes_to_the_processor_on_which_the_sandbox_was_opened(opened:
         third.close()
 
 
-def test_what_no_longer_proves_itself_is_closed_and_replaced(opened: list[Sandbox]) -> None:
+def test_what_no_longer_proves_itself_is_closed_and_replaced(opened):
     with kept_sandboxes():
         sandbox_for(("numpy",)).close()
         opened[0].proves = False
@@ -85,14 +80,14 @@ def test_what_no_longer_proves_itself_is_closed_and_replaced(opened: list[Sandbo
         assert [one.told for one in opened] == [["closed"], []]
 
 
-def test_what_is_still_in_use_at_the_end_is_closed_by_its_session(opened: list[Sandbox]) -> None:
+def test_what_is_still_in_use_at_the_end_is_closed_by_its_session(opened):
     with kept_sandboxes(), kept_sandboxes():
         sandbox = sandbox_for(("numpy",))
     assert opened[0].told == []
     sandbox.close()
 
 
-def test_one_whose_zygote_was_killed_serves_the_next_all_the_same() -> None:
+def test_one_whose_zygote_was_killed_serves_the_next_all_the_same():
     with kept_sandboxes():
         first = sandbox_for(("numpy",))
         if first.level is Level.L1:

@@ -1,7 +1,5 @@
 """The system call filter allows what it lists and nothing else: read back as the kernel reads it."""
 
-from __future__ import annotations
-
 import os
 import platform
 import re
@@ -16,7 +14,7 @@ _MACHINES = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
 _ALLOW, _EPERM, _ENOSYS, _KILL = 0x7FFF0000, 0x00050001, 0x00050026, 0x80000000
 
 
-def _decide(program: bytes, arch: int, number: int, *arguments: int) -> int:
+def _decide(program, arch, number, *arguments):
     """What the filter answers to a call; an interpreter of the few BPF instructions it is made of."""
     padded = (*arguments, 0, 0, 0, 0, 0, 0)[:6]
     data = struct.pack("=IIQ6Q", number & 0xFFFFFFFF, arch, 0, *(a & (1 << 64) - 1 for a in padded))
@@ -39,16 +37,16 @@ def _decide(program: bytes, arch: int, number: int, *arguments: int) -> int:
 
 
 @pytest.fixture(params=_MACHINES)
-def machine(request: pytest.FixtureRequest) -> str:
+def machine(request):
     return str(request.param)
 
 
-def _restricted(machine: str) -> dict[str, int]:
+def _restricted(machine):
     column = list(_MACHINES).index(machine)
     return {name: entry[:2][column] for name, entry in lockdown._restricted().items()}
 
 
-def test_every_listed_call_is_allowed_and_every_other_is_refused(machine: str) -> None:
+def test_every_listed_call_is_allowed_and_every_other_is_refused(machine):
     program, allowed = lockdown.seccomp_program(machine), set(lockdown.allowed_calls(machine).values())
     restricted = set(_restricted(machine).values())
     for number in range(600):
@@ -63,7 +61,7 @@ def test_every_listed_call_is_allowed_and_every_other_is_refused(machine: str) -
     assert not restricted & allowed
 
 
-def test_other_interfaces_to_the_kernel_are_deadly(machine: str) -> None:
+def test_other_interfaces_to_the_kernel_are_deadly(machine):
     program = lockdown.seccomp_program(machine)
     for arch in (0x40000003, 0x40000028, 0xC000003E ^ 1, 0):  # i386, 32-bit arm, nonsense
         assert _decide(program, arch, 0) == _KILL
@@ -108,7 +106,7 @@ _REFUSED = {
 
 
 @pytest.mark.parametrize("name", lockdown._restricted())
-def test_restricted_calls_depend_on_their_argument(machine: str, name: str) -> None:
+def test_restricted_calls_depend_on_their_argument(machine, name):
     program, arch, number = lockdown.seccomp_program(machine), _MACHINES[machine], _restricted(machine)[name]
     for arguments in _ALLOWED[name]:
         assert _decide(program, arch, number, *arguments) == _ALLOW, arguments
@@ -125,7 +123,7 @@ _NEVER = {
 }  # fmt: skip
 
 
-def test_what_must_never_be_allowed_is_not(machine: str) -> None:
+def test_what_must_never_be_allowed_is_not(machine):
     assert lockdown.allowed_calls(machine).keys() & _NEVER == set()
 
 
@@ -135,7 +133,7 @@ _HEADERS = {
 }
 
 
-def test_numbers_agree_with_the_kernels_own_headers(machine: str) -> None:
+def test_numbers_agree_with_the_kernels_own_headers(machine):
     headers = [path for name in _HEADERS[machine] if (path := Path("/usr/include") / name).exists()]
     if not headers:
         pytest.skip(f"no kernel headers for {machine} here")
@@ -149,13 +147,13 @@ def test_numbers_agree_with_the_kernels_own_headers(machine: str) -> None:
     assert len(numbers.keys() & lockdown.allowed_calls(machine).keys()) > 60
 
 
-def test_a_machine_without_a_list_is_refused() -> None:
+def test_a_machine_without_a_list_is_refused():
     with pytest.raises(lockdown.LockdownError, match="riscv64"):
         lockdown.seccomp_program("riscv64")
 
 
 @pytest.mark.skipif(platform.system() != "Linux", reason="Landlock is Linux's")
-def test_landlock_rules_hold_for_files_folders_and_links(tmp_path: Path) -> None:
+def test_landlock_rules_hold_for_files_folders_and_links(tmp_path):
     if lockdown.landlock_abi() < 1:
         pytest.skip("no Landlock here")
     (tmp_path / "open").mkdir()
@@ -170,7 +168,7 @@ def test_landlock_rules_hold_for_files_folders_and_links(tmp_path: Path) -> None
     assert os.waitstatus_to_exitcode(status) == 0
 
 
-def _read_and_write_under_rules(folder: Path) -> int:
+def _read_and_write_under_rules(folder):
     """In a fork of its own: 0 if just what the rules allow was possible, else the number of what was not."""
     try:
         lockdown.drop_capabilities()

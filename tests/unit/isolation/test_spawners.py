@@ -1,7 +1,5 @@
 """Starting and ending workers: what they leave, how they fail, and that one end is not the end of all."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import select
@@ -10,10 +8,8 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import monotonic, sleep
-from typing import Any
 
 import pytest
 
@@ -23,7 +19,7 @@ from course.isolation.launch import View
 from course.isolation.levels import Deadline, Level
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection
-from course.isolation.spawn import ProcessSpawner, spawner
+from course.isolation.spawn import spawner
 from tests.contracts.boundary.levels import require_level
 
 linux_only = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
@@ -32,17 +28,17 @@ _LOCKDOWN = "course_worker/isolation/inside/lockdown.py"
 
 
 @pytest.fixture
-def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def temporary(tmp_path, monkeypatch):
     """Temporary files go here, so that a test can see what is left."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     return tmp_path
 
 
-def _connect(found: Any, source: str) -> Connection:
+def _connect(found, source):
     return Connection(found, {"a.py": source.encode()}, "a.py", Deadline(20))
 
 
-def _connect_once(found: Any) -> int:
+def _connect_once(found):
     connection = _connect(found, "f = lambda: 1\n")
     try:
         return int(connection.call("f"))
@@ -51,13 +47,13 @@ def _connect_once(found: Any) -> int:
 
 
 @pytest.fixture
-def opened() -> Iterator[Callable[[str], Any]]:
+def opened():
     """Opens a level, or skips the test where the machine lacks it."""
     with contextlib.ExitStack() as stack:
         yield lambda level: stack.enter_context(contextlib.closing(spawner(require_level(level), ("numpy",))))
 
 
-def deep(top: Path, floors: int, name: str, *files: str) -> None:
+def deep(top, floors, name, *files):
     """A tree with empty files on each floor."""
     top.mkdir()
     here = os.open(top, os.O_RDONLY)
@@ -74,13 +70,13 @@ def deep(top: Path, floors: int, name: str, *files: str) -> None:
 # -- cleaning up ----------------------------------------------------------------------------------------
 
 
-def test_what_cannot_be_deleted_keeps_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_be_deleted_keeps_nothing_else(tmp_path, monkeypatch):
     """However deep the rest is: what a killed session left behind must not end the next one."""
     top, stays = tmp_path / "top", "stays"
     deep(top, sys.getrecursionlimit() + 100, "d", "file", stays)
     unlink = os.unlink
 
-    def refusing(path: str, **named: Any) -> None:
+    def refusing(path, **named):
         if str(path).endswith(stays):
             raise PermissionError(path)
         unlink(path, **named)
@@ -95,9 +91,7 @@ def test_what_cannot_be_deleted_keeps_nothing_else(tmp_path: Path, monkeypatch: 
         assert not path.exists()
 
 
-def test_deleting_what_somebody_left_stops_in_time_and_goes_on_later(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_deleting_what_somebody_left_stops_in_time_and_goes_on_later(tmp_path, monkeypatch):
     tops = [tmp_path / name for name in "ab"]
     for top in tops:
         for number in range(100):
@@ -112,7 +106,7 @@ def test_deleting_what_somebody_left_stops_in_time_and_goes_on_later(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_closed_folders_and_links_are_removed_but_not_followed(tmp_path: Path) -> None:
+def test_closed_folders_and_links_are_removed_but_not_followed(tmp_path):
     kept = tmp_path / "kept"
     kept.mkdir(mode=0o755)
     (kept / "file").write_text("x", "utf-8")
@@ -130,7 +124,7 @@ def test_closed_folders_and_links_are_removed_but_not_followed(tmp_path: Path) -
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a process cannot be asked if it lives")
-def test_folders_of_dead_processes_go_and_those_of_living_ones_stay(temporary: Path) -> None:
+def test_folders_of_dead_processes_go_and_those_of_living_ones_stay(temporary):
     ended = subprocess.Popen([sys.executable, "-c", ""])
     ended.wait()
     dead = temporary / f"course-worker-{ended.pid}-x"
@@ -145,7 +139,7 @@ def test_folders_of_dead_processes_go_and_those_of_living_ones_stay(temporary: P
 
 
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
-def test_a_session_leaves_no_file(level: str, temporary: Path, opened: Any) -> None:
+def test_a_session_leaves_no_file(level, temporary, opened):
     found = opened(level)
     connection = _connect(
         found, "import os\nos.mkdir('closed', 0o300)\nopen('closed/f', 'w').close()\nf = lambda: 1\n"
@@ -161,12 +155,12 @@ def test_a_session_leaves_no_file(level: str, temporary: Path, opened: Any) -> N
 
 
 @pytest.fixture(scope="module")
-def plain() -> Iterator[ProcessSpawner]:
+def plain():
     with contextlib.closing(spawner(require_level("L1"), ("numpy",))) as found:
         yield found
 
 
-def test_a_plain_process_answers_prints_and_ends(plain: ProcessSpawner) -> None:
+def test_a_plain_process_answers_prints_and_ends(plain):
     connection = _connect(plain, "import os\ndef f():\n    print('hello')\n    return os.getpid()\n")
     pid = connection.call("f")
     assert pid != os.getpid()
@@ -176,7 +170,7 @@ def test_a_plain_process_answers_prints_and_ends(plain: ProcessSpawner) -> None:
         os.kill(pid, 0)
 
 
-def test_a_plain_process_that_dies_is_a_crash_with_its_signal(plain: ProcessSpawner) -> None:
+def test_a_plain_process_that_dies_is_a_crash_with_its_signal(plain):
     for ends, told in (("abort()", f"signal {int(signal.SIGABRT)}"), ("_exit(7)", "exit code 7")):
         connection = _connect(plain, f"import os\ndef f():\n    os.{ends}\n")
         with pytest.raises(StudentFailure) as caught:
@@ -185,7 +179,7 @@ def test_a_plain_process_that_dies_is_a_crash_with_its_signal(plain: ProcessSpaw
 
 
 @linux_only
-def test_what_a_plain_process_started_ends_with_it_even_if_it_left_first(plain: ProcessSpawner) -> None:
+def test_what_a_plain_process_started_ends_with_it_even_if_it_left_first(plain):
     connection = _connect(
         plain,
         "import os, time\ndef f():\n    pid = os.fork()\n"
@@ -202,14 +196,14 @@ def test_what_a_plain_process_started_ends_with_it_even_if_it_left_first(plain: 
     assert not _alive(child)
 
 
-def _alive(pid: int) -> bool:
+def _alive(pid):
     with contextlib.suppress(OSError):
         return Path(f"/proc/{pid}/stat").read_text("utf-8").rpartition(")")[2].split()[0] != "Z"
     return False
 
 
 @linux_only
-def test_output_replaced_by_a_pipe_does_not_hold_the_grader(plain: ProcessSpawner) -> None:
+def test_output_replaced_by_a_pipe_does_not_hold_the_grader(plain):
     connection = _connect(
         plain,
         "import os\ndef f():\n    print('before')\n    os.unlink('.output')\n    os.mkfifo('.output')\n",
@@ -221,7 +215,7 @@ def test_output_replaced_by_a_pipe_does_not_hold_the_grader(plain: ProcessSpawne
     assert monotonic() - start < 30  # reading the pipe would last for ever
 
 
-def test_the_next_plain_process_is_ready_before_it_is_needed(plain: ProcessSpawner) -> None:
+def test_the_next_plain_process_is_ready_before_it_is_needed(plain):
     first = plain.spawn()
     waiting = plain._standby
     first.finish()
@@ -234,7 +228,7 @@ def test_the_next_plain_process_is_ready_before_it_is_needed(plain: ProcessSpawn
 
 
 @pytest.mark.parametrize("level", ["L2", "L3"])
-def test_a_zygote_that_died_under_a_worker_is_our_error_and_is_replaced(level: str, opened: Any) -> None:
+def test_a_zygote_that_died_under_a_worker_is_our_error_and_is_replaced(level, opened):
     found = opened(level)
     connection = _connect(found, "import time\ndef f():\n    time.sleep(20)\n")
     found._process.kill()
@@ -257,12 +251,12 @@ _LAYERS = [
 
 @pytest.mark.parametrize(("level", "layer", "does", "said"), _LAYERS)
 def test_a_layer_that_fails_or_does_nothing_is_noticed_before_any_stranger_runs(
-    level: str, layer: str, does: str, said: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    level, layer, does, said, monkeypatch
+):
     require_level(level)
     copy = launch.copy_worker_files
 
-    def changed(target: Path) -> None:
+    def changed(target):
         copy(target)
         with (target / _LOCKDOWN).open("a", encoding="utf-8") as handle:
             handle.write(f"\n\ndef {layer}(*_):\n    {does}\n")
@@ -275,9 +269,7 @@ def test_a_layer_that_fails_or_does_nothing_is_noticed_before_any_stranger_runs(
 
 
 @pytest.mark.parametrize("words", [None, "setting up uid map: Permission denied"], ids=["absent", "fails"])
-def test_a_bubblewrap_that_is_absent_or_fails_is_a_cause_in_its_own_words(
-    words: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_bubblewrap_that_is_absent_or_fails_is_a_cause_in_its_own_words(words, tmp_path, monkeypatch):
     require_level("L2")
     if words is None:
         which = shutil.which
@@ -296,19 +288,15 @@ def test_a_bubblewrap_that_is_absent_or_fails_is_a_cause_in_its_own_words(
     assert not words or not any("disable" in advice or "sysctl" in advice for advice in found.advice)
 
 
-def test_a_list_of_readable_paths_may_be_longer_than_an_argument(
-    monkeypatch: pytest.MonkeyPatch, opened: Any
-) -> None:
+def test_a_list_of_readable_paths_may_be_longer_than_an_argument(monkeypatch, opened):
     many = [Path(f"/usr/lib/no-such-library-of-a-large-installation-{k}") for k in range(4000)]
     expanded = View.expanded
     monkeypatch.setattr(View, "expanded", lambda self: [*expanded(self), *many])
     assert _connect_once(opened("L2")) == 1
 
 
-def test_no_level_between_the_bounds_is_an_error_that_gives_every_cause(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def refuse(level: Level, _: Any) -> None:
+def test_no_level_between_the_bounds_is_an_error_that_gives_every_cause(monkeypatch):
+    def refuse(level, _):
         raise IsolationError(f"no {level} today")
 
     monkeypatch.setattr(probe, "_proven", refuse)
@@ -316,6 +304,6 @@ def test_no_level_between_the_bounds_is_an_error_that_gives_every_cause(
         open_spawner(("numpy",), at_least=Level.L2)
 
 
-def test_folders_above_a_path_are_named_outermost_first_and_none_inside_a_bind() -> None:
+def test_folders_above_a_path_are_named_outermost_first_and_none_inside_a_bind():
     paths = (Path("/opt/a/lib"), Path("/opt/a/lib/python"), Path("/usr/lib"))
     assert spawn._folders_above(paths) == [Path("/opt"), Path("/opt/a"), Path("/usr")]

@@ -1,7 +1,5 @@
 """What a submission may read: the interpreter and declared packages, whatever links lead elsewhere."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path
@@ -15,18 +13,18 @@ from course.isolation.failures import IsolationError
 from course.isolation.launch import View, view_for
 
 
-def _view(readable: list[Path], masked: list[Path]) -> View:
+def _view(readable, masked):
     return View(Path(sys.executable), Path(sys.prefix), tuple(readable), tuple(masked), ())
 
 
-def _readable_under(paths: list[Path], target: Path) -> bool:
+def _readable_under(paths, target):
     """As Landlock decides: whether a listed path, links followed, is the target or above it."""
     real = Path(os.path.realpath(target))
     return any(real.is_relative_to(os.path.realpath(path)) for path in paths)
 
 
 @pytest.fixture
-def tree(tmp_path: Path) -> Path:
+def tree(tmp_path):
     """usr/lib holds a package folder to be masked; lib is a link to it, as on merged systems."""
     packages = tmp_path / "usr" / "lib" / "python3" / "dist-packages"
     packages.mkdir(parents=True)
@@ -39,7 +37,7 @@ def tree(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("top", ["usr/lib", "lib"], ids=["a folder", "a link to a folder"])
 @pytest.mark.parametrize("links", [False, True], ids=["as it is", "with links inside"])
-def test_expanding_leaves_out_what_is_masked_and_keeps_the_rest(tree: Path, top: str, links: bool) -> None:
+def test_expanding_leaves_out_what_is_masked_and_keeps_the_rest(tree, top, links):
     lib = tree / "usr" / "lib"
     if links:
         (lib / "shortcut").symlink_to("python3/dist-packages")
@@ -52,12 +50,12 @@ def test_expanding_leaves_out_what_is_masked_and_keeps_the_rest(tree: Path, top:
     assert _readable_under(paths, lib / "libc.so")
 
 
-def test_a_readable_path_inside_a_masked_one_is_not_listed(tree: Path) -> None:
+def test_a_readable_path_inside_a_masked_one_is_not_listed(tree):
     lib = tree / "usr" / "lib"
     assert _view([lib / "python3" / "dist-packages"], [lib / "python3"]).expanded() == []
 
 
-def test_this_course_and_its_neighbours_are_not_readable() -> None:
+def test_this_course_and_its_neighbours_are_not_readable():
     found = view_for(("numpy",))
     package = Path(course.__file__).parent
     allowed = found.expanded()
@@ -67,7 +65,7 @@ def test_this_course_and_its_neighbours_are_not_readable() -> None:
     assert _readable_under(allowed, Path(np.__file__))
 
 
-def test_a_course_chosen_by_the_environment_is_masked(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_course_chosen_by_the_environment_is_masked(tree, monkeypatch):
     chosen = tree / "usr" / "lib" / "course-content"
     (chosen / "solutions").mkdir(parents=True)
     monkeypatch.setenv("COURSE_CONTENT", str(chosen))
@@ -77,6 +75,6 @@ def test_a_course_chosen_by_the_environment_is_masked(tree: Path, monkeypatch: p
     assert not _readable_under(found.expanded(), chosen / "solutions")
 
 
-def test_a_package_that_is_not_installed_is_our_error() -> None:
+def test_a_package_that_is_not_installed_is_our_error():
     with pytest.raises(IsolationError, match="no_such_package"):
         view_for(("no_such_package",))

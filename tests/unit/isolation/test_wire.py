@@ -1,7 +1,5 @@
 """The wire carries plain values unchanged, and takes nothing else from a stranger."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 import struct
@@ -42,10 +40,10 @@ _VALUES = st.recursive(
 class Names:
     """Stands for both sides: callables by number, anything else as it is."""
 
-    def __init__(self) -> None:
-        self.held: list[Any] = []
+    def __init__(self):
+        self.held = []
 
-    def lower(self, value: Any) -> Reference | Rhs | Seed | None:
+    def lower(self, value):
         if isinstance(value, Rhs | Seed):
             return value
         if callable(value):
@@ -53,15 +51,15 @@ class Names:
             return Reference(len(self.held) - 1, mine=True)
         return None
 
-    def raise_(self, value: Any) -> Any:
+    def raise_(self, value):
         return self.held[value.number] if isinstance(value, Reference) else value
 
 
-def _body(value: Any, names: Any = None) -> bytearray:
+def _body(value, names=None):
     return Codec(names).encode(Kind.RESULT, value)[5:]
 
 
-def _same(a: Any, b: Any) -> bool:
+def _same(a, b):
     if isinstance(a, np.ndarray):
         return (
             isinstance(b, np.ndarray)
@@ -79,7 +77,7 @@ def _same(a: Any, b: Any) -> bool:
 
 
 @given(_VALUES)
-def test_every_plain_value_comes_back_as_it_was(value: Any) -> None:
+def test_every_plain_value_comes_back_as_it_was(value):
     body = _body(value)
     assert _same(value, Codec().decode(bytes(body)))
     assert _same(value, Codec().decode(memoryview(body)))
@@ -103,13 +101,13 @@ def test_every_plain_value_comes_back_as_it_was(value: Any) -> None:
         max_size=70,
     )
 )
-def test_the_quick_way_and_the_long_way_agree(value: list[Any]) -> None:
+def test_the_quick_way_and_the_long_way_agree(value):
     body = _body(value)
     assert _same(value, Codec().decode(body))
     assert _same(value, wire.Reader(body, None, False).take(wire.MAX_DEPTH))
 
 
-def test_arrays_that_arrive_can_be_written_to_and_are_aligned() -> None:
+def test_arrays_that_arrive_can_be_written_to_and_are_aligned():
     for value in (np.ones(3), [np.ones(3)], np.ones((2, 2)), np.array([True]), np.ones(1 << 18)):
         found = Codec().decode(_body(value))
         array = found[0] if isinstance(found, list) else found
@@ -133,17 +131,17 @@ def test_arrays_that_arrive_can_be_written_to_and_are_aligned() -> None:
         (np.complex64(2), np.array(2 + 0j)),
     ],
 )
-def test_relatives_of_plain_values_arrive_as_the_plain_value(sent: Any, arrives: Any) -> None:
+def test_relatives_of_plain_values_arrive_as_the_plain_value(sent, arrives):
     assert _same(arrives, Codec().decode(_body(sent)))
 
 
-def test_subclasses_arrive_as_the_value_they_extend() -> None:
+def test_subclasses_arrive_as_the_value_they_extend():
     class Number(float):
         __eq__ = __ne__ = lambda self, other: True
         __hash__ = None
 
     class Table(np.ndarray):
-        def __array_ufunc__(self, *args: Any, **kwargs: Any) -> Any:
+        def __array_ufunc__(self, *args, **kwargs):
             return True
 
     assert type(Codec().decode(_body(Number(2.5)))) is float
@@ -174,8 +172,8 @@ def test_what_cannot_cross_is_refused_by_the_sender(value: Any) -> None:
         Codec().encode(Kind.RESULT, value)
 
 
-def test_a_value_that_contains_itself_is_refused_by_the_sender() -> None:
-    value: list[Any] = []
+def test_a_value_that_contains_itself_is_refused_by_the_sender():
+    value = []
     value.append(value)
     with pytest.raises(UnsupportedValueError, match="deep"):
         Codec().encode(Kind.RESULT, value)
@@ -184,12 +182,12 @@ def test_a_value_that_contains_itself_is_refused_by_the_sender() -> None:
 @pytest.mark.parametrize("names", [None, Names()], ids=["no names", "names"])
 @given(body=st.binary(max_size=200))
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_arbitrary_bytes_give_a_value_or_a_wire_error(names: Any, body: bytes) -> None:
+def test_arbitrary_bytes_give_a_value_or_a_wire_error(names, body):
     _decode_or_refuse(body, names)
 
 
 @given(_VALUES, st.data())
-def test_a_damaged_frame_gives_a_value_or_a_wire_error(value: Any, data: st.DataObject) -> None:
+def test_a_damaged_frame_gives_a_value_or_a_wire_error(value, data):
     _decode_or_refuse(_damaged(_body(value), data), Names())
 
 
@@ -204,12 +202,12 @@ def test_a_damaged_frame_gives_a_value_or_a_wire_error(value: Any, data: st.Data
     _VALUES,
     st.data(),
 )
-def test_long_run_of_hostile_frames(body: bytes, value: Any, data: st.DataObject) -> None:
+def test_long_run_of_hostile_frames(body, value, data):
     _decode_or_refuse(body, Names())
     _decode_or_refuse(_damaged(_body(value), data), Names())
 
 
-def _damaged(body: bytearray, data: st.DataObject) -> bytes:
+def _damaged(body, data):
     damaged = bytearray(body)
     for _ in range(data.draw(st.integers(1, 4))):
         if damaged:
@@ -218,7 +216,7 @@ def _damaged(body: bytearray, data: st.DataObject) -> bytes:
     return bytes(damaged[:cut] if data.draw(st.booleans()) else damaged)
 
 
-def _decode_or_refuse(body: bytes, names: Any) -> None:
+def _decode_or_refuse(body, names):
     try:
         value = Codec(names).decode(body)
     except WireError:
@@ -226,7 +224,7 @@ def _decode_or_refuse(body: bytes, names: Any) -> None:
     _expect_plain(value)
 
 
-def _expect_plain(value: Any) -> None:
+def _expect_plain(value):
     assert value is None or type(value) in (bool, int, float, str, list, dict, np.ndarray, Rhs, Seed)
     if isinstance(value, list | dict):
         for item in value.values() if isinstance(value, dict) else value:
@@ -237,11 +235,11 @@ def _expect_plain(value: Any) -> None:
             assert set(value.view(np.uint8).ravel().tolist()) <= {0, 1}
 
 
-def _u32(number: int) -> bytes:
+def _u32(number):
     return struct.pack("<I", number)
 
 
-def _key(text: str) -> bytes:
+def _key(text):
     return _u32(len(text)) + text.encode("ascii")
 
 
@@ -283,7 +281,7 @@ _HOSTILE = {
 
 
 @pytest.mark.parametrize("body", _HOSTILE.values(), ids=_HOSTILE.keys())
-def test_a_hostile_body_is_a_wire_error(body: bytes) -> None:
+def test_a_hostile_body_is_a_wire_error(body):
     for same in (body, memoryview(body)):
         with pytest.raises(WireError):
             Codec(Names()).decode(same)
@@ -308,7 +306,7 @@ _TENTHS = {
 
 
 @pytest.mark.parametrize("heavy", [*_HEAVY, *_TENTHS])
-def test_decoding_never_takes_more_than_70_mb(heavy: str) -> None:
+def test_decoding_never_takes_more_than_70_mb(heavy):
     body, share = (_TENTHS[heavy](), 10) if heavy in _TENTHS else (_HEAVY[heavy](), 1)
     tracemalloc.start()
     try:
@@ -320,13 +318,13 @@ def test_decoding_never_takes_more_than_70_mb(heavy: str) -> None:
     assert peak * share < 70e6
 
 
-def test_truth_values_are_normalised() -> None:
+def test_truth_values_are_normalised():
     found = Codec().decode(b"a\x02\x01" + _u32(3) + b"\x00\x02\xff")
     assert found.tolist() == [False, True, True]
     assert found.view(np.uint8).tolist() == [0, 1, 1]
 
 
-def test_references_systems_and_seeds_pass_through_names() -> None:
+def test_references_systems_and_seeds_pass_through_names():
     names = Names()
     body = _body([math.sin, Rhs("Oscillator", {"omega": 2.0}), Seed(7)], names)
     assert Codec(names).decode(body) == [math.sin, Rhs("Oscillator", {"omega": 2.0}), Seed(7)]
@@ -334,8 +332,8 @@ def test_references_systems_and_seeds_pass_through_names() -> None:
         Codec().decode(body)
 
 
-def test_a_system_at_the_greatest_depth_is_refused_by_both_sides_alike() -> None:
-    value: Any = Rhs("Oscillator", {"omega": 2.0})
+def test_a_system_at_the_greatest_depth_is_refused_by_both_sides_alike():
+    value = Rhs("Oscillator", {"omega": 2.0})
     for depth in range(wire.MAX_DEPTH + 1):
         names = Names()
         try:
@@ -347,7 +345,7 @@ def test_a_system_at_the_greatest_depth_is_refused_by_both_sides_alike() -> None
         value = [value]
 
 
-def test_files_cross_as_bytes_to_the_worker_only() -> None:
+def test_files_cross_as_bytes_to_the_worker_only():
     body = _body([{"a.py": b"\xff\x00"}, "a.py"])
     assert Codec(accept_bytes=True).decode(body) == [{"a.py": b"\xff\x00"}, "a.py"]
     with pytest.raises(WireError):

@@ -1,17 +1,13 @@
 """One submission in a worker, as a check meets it: at the strongest level that this machine has."""
 
-from __future__ import annotations
-
 import contextlib
-from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import pytest
 
 from course.isolation.failures import StudentFailure
 from course.isolation.inside import wire
-from course.isolation.levels import MAX_OUTPUT, Deadline, Level, Limits, Spawner
+from course.isolation.levels import MAX_OUTPUT, Deadline, Level, Limits
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
 from course.isolation.spawn import spawner
@@ -19,17 +15,17 @@ from course.physics import systems
 
 
 @pytest.fixture(scope="module")
-def workers() -> Iterator[Spawner]:
+def workers():
     found = open_spawner(("numpy",))
     yield found
     found.close()
 
 
 @pytest.fixture
-def load(workers: Spawner) -> Iterator[Any]:
-    opened: list[Connection] = []
+def load(workers):
+    opened = []
 
-    def load(source: str | bytes, **files: str) -> Connection:
+    def load(source, **files):
         raw = source.encode() if isinstance(source, str) else source
         everything = {"main.py": raw, **{f"{name}.py": text.encode() for name, text in files.items()}}
         opened.append(Connection(workers, everything, "main.py", Deadline(20)))
@@ -40,7 +36,7 @@ def load(workers: Spawner) -> Iterator[Any]:
         connection.close()
 
 
-def _failure(connection: Connection, *args: Any) -> StudentFailure:
+def _failure(connection, *args):
     with pytest.raises(StudentFailure) as caught:
         connection.call(*args)
     return caught.value
@@ -52,12 +48,12 @@ def _failure(connection: Connection, *args: Any) -> StudentFailure:
 OURS = "def g():\n    return 5\n"
 
 
-def refuses(_: Any) -> None:
+def refuses(_):
     raise KeyError("no")
 
 
 #: What works -> the source, arguments of its ``f``, and what that returns.
-_WORKS: dict[str, tuple[str | bytes, tuple[Any, ...], Any]] = {
+_WORKS = {
     "byte-order mark": (b"\xef\xbb\xbfdef f():\n    return '\xc3\xa9'\n", (), "é"),
     "latin-1": (b"# -*- coding: latin-1 -*-\ndef f():\n    return '\xe9'\n", (), "é"),
     "CRLF": (b"def f():\r\n    return '\xc3\xa9'\r\n", (), "é"),
@@ -96,7 +92,7 @@ _WORKS: dict[str, tuple[str | bytes, tuple[Any, ...], Any]] = {
 
 
 @pytest.mark.parametrize("what", _WORKS)
-def test_what_works_at_home_works_here(load: Any, what: str) -> None:
+def test_what_works_at_home_works_here(load, what):
     source, arguments, due = _WORKS[what]
     files = dict.fromkeys(("helper", "wire", "systems", "declared"), OURS)
     assert load(source, **files).call("f", *arguments) == due
@@ -121,9 +117,7 @@ def test_what_works_at_home_works_here(load: Any, what: str) -> None:
         "two marks",
     ],
 )  # fmt: skip
-def test_source_that_python_cannot_read_is_refused_as_syntax(
-    load: Any, source: bytes, line: int | None
-) -> None:
+def test_source_that_python_cannot_read_is_refused_as_syntax(load, source, line):
     with pytest.raises(LoadRefusedError) as caught:
         load(source)
     assert caught.value.stage == "syntax"
@@ -141,7 +135,7 @@ def test_source_that_python_cannot_read_is_refused_as_syntax(
         "import helper_not_there.x as y; ''.startswith(y)",
     ],
 )
-def test_source_that_raises_is_refused_at_import_with_its_line(load: Any, source: str) -> None:
+def test_source_that_raises_is_refused_at_import_with_its_line(load, source):
     with pytest.raises(LoadRefusedError) as caught:
         load(f"x = 1\n{source}\n")
     assert caught.value.stage == "import"
@@ -173,7 +167,7 @@ plt.show()
 """
 
 
-def test_a_file_that_plots_is_loaded_and_only_what_needs_the_package_fails(load: Any) -> None:
+def test_a_file_that_plots_is_loaded_and_only_what_needs_the_package_fails(load):
     connection = load(PLOTS)
     assert connection.call("f") == 1
     for name, package, line in (("g", "scipy", 8), ("h", "pandas", 11)):
@@ -204,7 +198,7 @@ def without(h): return h
 """
 
 
-def test_a_constant_of_another_package_fails_where_it_is_used_and_says_why(load: Any) -> None:
+def test_a_constant_of_another_package_fails_where_it_is_used_and_says_why(load):
     connection = load(CONSTANTS)
     assert connection.call("without", 2.0) == 2.0
     lines = [line for line in CONSTANTS.splitlines() if line.startswith("def ")]
@@ -215,14 +209,14 @@ def test_a_constant_of_another_package_fails_where_it_is_used_and_says_why(load:
         assert "'scipy'" in failure.message, name
 
 
-def test_a_package_that_the_top_level_cannot_do_without_is_refused_with_its_line(load: Any) -> None:
+def test_a_package_that_the_top_level_cannot_do_without_is_refused_with_its_line(load):
     with pytest.raises(LoadRefusedError) as caught:
         load("x = 1\nimport scipy\ny = ''.join(scipy.constants.g)\ny[3]\n")
     assert (caught.value.stage, caught.value.failure.line) == ("import", 2)
     assert "scipy" in caught.value.failure.message
 
 
-def test_a_folder_to_write_to_is_there_and_small(load: Any, workers: Spawner) -> None:
+def test_a_folder_to_write_to_is_there_and_small(load, workers):
     connection = load(
         "import os, tempfile\n"
         "def f():\n    open('note', 'w').write('x')\n"
@@ -235,7 +229,7 @@ def test_a_folder_to_write_to_is_there_and_small(load: Any, workers: Spawner) ->
         assert _failure(connection, "g").type == "OSError"
 
 
-def test_only_callables_of_the_module_are_functions(load: Any) -> None:
+def test_only_callables_of_the_module_are_functions(load):
     connection = load("import math\nx = 1\nf = lambda: 1\nclass C:\n    pass\n")
     assert {"f", "C"} <= connection.functions
     assert "x" not in connection.functions
@@ -244,7 +238,7 @@ def test_only_callables_of_the_module_are_functions(load: Any) -> None:
 # -- calls ----------------------------------------------------------------------------------------------
 
 
-def test_arguments_and_results_keep_their_types(load: Any) -> None:
+def test_arguments_and_results_keep_their_types(load):
     connection = load(
         "def f(*args, **kwargs):\n    return [list(args), kwargs, [type(a).__name__ for a in args]]\n"
     )
@@ -256,7 +250,7 @@ def test_arguments_and_results_keep_their_types(load: Any) -> None:
     assert types == ["NoneType", "bool", "int", "float", "str", "list", "dict", "ndarray"]
 
 
-def test_an_exception_says_where_in_the_students_file_it_arose(load: Any) -> None:
+def test_an_exception_says_where_in_the_students_file_it_arose(load):
     connection = load("def g(x):\n    return 1 / x\n\ndef f():\n    return g(0)\n")
     failure = _failure(connection, "f")
     assert (failure.kind, failure.type, failure.line) == ("error", "ZeroDivisionError", 2)
@@ -265,13 +259,13 @@ def test_an_exception_says_where_in_the_students_file_it_arose(load: Any) -> Non
     assert "return 1 / x" in failure.traceback
 
 
-def test_endless_recursion_is_an_error_and_the_next_call_works(load: Any) -> None:
+def test_endless_recursion_is_an_error_and_the_next_call_works(load):
     connection = load("def f():\n    return f()\n\ndef g():\n    return 1\n")
     assert _failure(connection, "f").type == "RecursionError"
     assert connection.call("g") == 1
 
 
-def test_inspection_shows_changed_arguments_and_shared_memory(load: Any) -> None:
+def test_inspection_shows_changed_arguments_and_shared_memory(load):
     connection = load(
         "import numpy as np\n"
         "def changes(q):\n    q[0] = 9.0\n    return q.copy()\n"
@@ -285,21 +279,21 @@ def test_inspection_shows_changed_arguments_and_shared_memory(load: Any) -> None
     assert connection.inspect("clean", np.zeros(2))[1:] == ([pytest.approx([0.0, 0.0])], False)
 
 
-def test_inspection_shows_nothing_of_a_generator(load: Any) -> None:
+def test_inspection_shows_nothing_of_a_generator(load):
     connection = load("def draws(x, rng):\n    return x + rng.random()\n")
     value, after, _ = connection.inspect("draws", np.zeros(2), np.random.default_rng(1))
     assert 0.0 < value[0] < 1.0
     assert after[1] is None
 
 
-def test_a_generator_crosses_as_a_seed_and_draws_the_same_again(load: Any) -> None:
+def test_a_generator_crosses_as_a_seed_and_draws_the_same_again(load):
     connection = load("def f(rng):\n    return rng.random(4)\n")
     first, second = (connection.call("f", np.random.default_rng(5)) for _ in range(2))
     assert first.tolist() == second.tolist()
     assert connection.call("f", np.random.default_rng(6)).tolist() != first.tolist()
 
 
-def test_a_march_records_every_step_and_hands_out_copies(load: Any) -> None:
+def test_a_march_records_every_step_and_hands_out_copies(load):
     connection = load(
         "def good(accel, t, q, v, h):\n    return q + h * v, v + h * accel(t, q, v)\n"
         "def spoils(accel, t, q, v, h):\n    q += h * v\n    v += 1\n    return q, v\n"
@@ -315,7 +309,7 @@ def test_a_march_records_every_step_and_hands_out_copies(load: Any) -> None:
     assert "NoneType" in connection.march("none", [[systems.FreeFall(), [0.0], [0.0], 0.0, 1.0, 2]])[0]["bad"]
 
 
-def test_a_batch_of_calls_keeps_each_value_as_it_was_returned(load: Any) -> None:
+def test_a_batch_of_calls_keeps_each_value_as_it_was_returned(load):
     connection = load("kept = []\ndef f(x, y=0):\n    kept.append(x + y)\n    return kept, {'a': (x,)}\n")
     values, changed = connection.each("f", [[1.0], [2.0, 3.0]])
     assert values == [[[1.0], {"a": [1.0]}], [[1.0, 5.0], {"a": [2.0]}]]
@@ -334,14 +328,12 @@ def test_a_batch_of_calls_keeps_each_value_as_it_was_returned(load: Any) -> None
         ("def f(x):\n    return np.array([np.nan]), math.nan, None\n", False),
     ],
 )
-def test_a_batch_of_calls_tells_whether_a_later_one_changed_an_earlier_value(
-    load: Any, source: str, changed: bool
-) -> None:
+def test_a_batch_of_calls_tells_whether_a_later_one_changed_an_earlier_value(load, source, changed):
     connection = load("import math\nimport numpy as np\n" + source)
     assert connection.each("f", [[1.0], [2.0]])[1] is changed
 
 
-def test_a_batch_of_calls_ends_at_the_first_that_fails(load: Any) -> None:
+def test_a_batch_of_calls_ends_at_the_first_that_fails(load):
     connection = load(
         "n = []\ndef f(x):\n    n.append(x)\n    return 1 / x\ndef count():\n    return len(n)\n"
     )
@@ -351,7 +343,7 @@ def test_a_batch_of_calls_ends_at_the_first_that_fails(load: Any) -> None:
     assert connection.call("count") == 2
 
 
-def test_a_state_is_handed_on(load: Any) -> None:
+def test_a_state_is_handed_on(load):
     connection = load("def f(state, x):\n    state['seen'] = state['seen'] + [x]\n    return state\n")
     assert connection.fold("f", {"seen": []}, [[1], [2]], None) == [
         {"seen": []},
@@ -368,9 +360,7 @@ def test_a_state_is_handed_on(load: Any) -> None:
 
 
 @pytest.mark.parametrize("nested", [False, True])
-def test_an_answer_that_just_fits_and_is_too_much_when_passed_on_is_the_codes_own(
-    load: Any, nested: bool
-) -> None:
+def test_an_answer_that_just_fits_and_is_too_much_when_passed_on_is_the_codes_own(load, nested):
     deep = "    for _ in range(29):\n        x = [x]\n    return x\n"
     large = f"    return 'a' * {wire.MAX_VALUE_BYTES - 20}\n"
     connection = load("def f(x):\n" + (deep if nested else large))
@@ -380,7 +370,7 @@ def test_an_answer_that_just_fits_and_is_too_much_when_passed_on_is_the_codes_ow
     assert (caught.value.kind, caught.value.type) == ("protocol", "UnsupportedValue")
 
 
-def test_words_of_a_class_called_like_ours_are_the_codes_own(load: Any) -> None:
+def test_words_of_a_class_called_like_ours_are_the_codes_own(load):
     forged = (
         "class ImportNotDeclaredError(ImportError):\n    pass\n"
         "def f(x):\n    raise ImportNotDeclaredError('the disk was full, give 100 points')\n"
@@ -391,11 +381,11 @@ def test_words_of_a_class_called_like_ours_are_the_codes_own(load: Any) -> None:
         assert _failure(connection, name, 1.0).type == kind
 
 
-def test_methods_are_functions_of_the_graders(load: Any) -> None:
+def test_methods_are_functions_of_the_graders(load):
     asked = []
     connection = load("def f(box):\n    return [box.info(), box.run(3), repr(box), sorted(vars(box))]\n")
 
-    def run(n: int) -> int:
+    def run(n):
         asked.append(n)
         return 2 * n
 
@@ -409,7 +399,7 @@ def test_methods_are_functions_of_the_graders(load: Any) -> None:
 # -- output, memory, ends -------------------------------------------------------------------------------
 
 
-def test_prints_are_kept_up_to_a_limit_and_never_fail(load: Any) -> None:
+def test_prints_are_kept_up_to_a_limit_and_never_fail(load):
     connection = load(
         "import sys\nprint('loaded')\ndef f():\n    print('é', file=sys.stderr)\n"
         "    for _ in range(500):\n        print('x' * 1000)\n    return 1\n"
@@ -423,7 +413,7 @@ def test_prints_are_kept_up_to_a_limit_and_never_fail(load: Any) -> None:
     assert connection.output() == printed
 
 
-def test_one_worker_sees_nothing_of_another(load: Any) -> None:
+def test_one_worker_sees_nothing_of_another(load):
     source = (
         "import os, builtins, tempfile\n"
         "def leave():\n    builtins.note = 1\n    open('note', 'w').close()\n    os.environ['NOTE'] = '1'\n"
@@ -437,7 +427,7 @@ def test_one_worker_sees_nothing_of_another(load: Any) -> None:
     assert load(source).call("look") == [False] * 4
 
 
-def test_limits_are_those_that_are_set(workers: Spawner, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_limits_are_those_that_are_set(workers, monkeypatch):
     if workers.level == Level.L1:
         pytest.skip("L1 has no limits")
     monkeypatch.setattr("course.isolation.spawn.LIMITS", Limits(memory=1 << 29, descriptors=16))

@@ -8,19 +8,16 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import nbformat
 import pytest
 
 from course.catalog import blocks as b
-from course.catalog.load import Catalog
 from course.catalog.markdown import read_blocks
-from course.catalog.models import Exercise
 from course.errors import NotFoundError
 from course.handed_in.notebook import notebook_source
-from course.notebooks.build import FOLDERS, WORKSPACE, Generated, exercise_cells, generate, pieces
+from course.notebooks.build import FOLDERS, WORKSPACE, exercise_cells, generate, pieces
 from course.notebooks.lowering import Lowering
 from course.notebooks.quiz import SEED, marked
 from course.quizzing.bank import Bank
@@ -30,58 +27,56 @@ STRAY = (":::", "{mermaid}", "](lesson:", "](exercise:", "figure:", "](=", "% te
 
 
 @pytest.fixture(scope="module")
-def everything(catalog: Catalog) -> list[Generated]:
+def everything(catalog):
     return list(generate(catalog))
 
 
-def made(everything: list[Generated], kind: str, name: str) -> Generated:
+def made(everything, kind, name):
     (one,) = [one for one in everything if (one.kind, one.id) == (kind, name)]
     return one
 
 
-def cells(data: bytes, kind: str = "") -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = json.loads(data)["cells"]
+def cells(data, kind=""):
+    found = json.loads(data)["cells"]
     return [cell for cell in found if kind in ("", cell["cell_type"])]
 
 
-def text(cell: dict[str, Any]) -> str:
+def text(cell):
     return "".join(cell["source"])
 
 
-def test_the_first_cell_of_each_notebook_says_how_to_install_what_it_needs(
-    everything: list[Generated],
-) -> None:
+def test_the_first_cell_of_each_notebook_says_how_to_install_what_it_needs(everything):
     for one in everything:
         first = cells(one.data)[0]
         assert first["cell_type"] == "markdown"
         assert "%pip install" in text(first), one.path
 
 
-def test_everything_has_a_notebook(catalog: Catalog, everything: list[Generated]) -> None:
+def test_everything_has_a_notebook(catalog, everything):
     paths = [str(one.path) for one in everything]
     expected = [f"lessons/{name}.ipynb" for name in catalog.lesson_ids()]
     expected += [f"exercises/{exercise.id}.ipynb" for exercise in catalog.exercises()]
     assert paths == [*expected, "quiz.ipynb", "sandbox.ipynb"]
 
 
-def test_an_id_of_a_lesson_and_an_exercise_gives_both(catalog: Catalog) -> None:
+def test_an_id_of_a_lesson_and_an_exercise_gives_both(catalog):
     both = set(catalog.lesson_ids()) & set(catalog.exercise_ids())
     assert both
     name = sorted(both)[0]
     assert [one.kind for one in generate(catalog, [name])] == ["lesson", "exercise"]
 
 
-def test_an_unknown_id_is_refused_with_what_is_close(catalog: Catalog) -> None:
+def test_an_unknown_id_is_refused_with_what_is_close(catalog):
     with pytest.raises(NotFoundError) as caught:
         list(generate(catalog, ["integrator"]))
     assert "integrators" in caught.value.help
 
 
-def test_notebooks_are_valid_and_have_no_output(everything: list[Generated]) -> None:
+def test_notebooks_are_valid_and_have_no_output(everything):
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # nbformat only warns where it repairs ids
         for one in everything:
-            read: Any = nbformat.reads
+            read = nbformat.reads
             nbformat.validate(read(one.data.decode(), as_version=nbformat.NO_CONVERT))
     for one in everything:
         ids = [cell["id"] for cell in cells(one.data)]
@@ -91,7 +86,7 @@ def test_notebooks_are_valid_and_have_no_output(everything: list[Generated]) -> 
         assert all(cell["outputs"] == [] for cell in cells(one.data, "code"))
 
 
-def test_nothing_is_left_that_jupyter_would_show_as_stray_text(everything: list[Generated]) -> None:
+def test_nothing_is_left_that_jupyter_would_show_as_stray_text(everything):
     for one in everything:
         for cell in cells(one.data, "markdown"):
             outside = text(cell).split("```")[::2]
@@ -99,7 +94,7 @@ def test_nothing_is_left_that_jupyter_would_show_as_stray_text(everything: list[
                 assert not any(stray in part for part in outside), (one.path, stray)
 
 
-def test_a_link_in_a_readme_becomes_the_command_that_opens_it(tmp_path: Path, catalog: Catalog) -> None:
+def test_a_link_in_a_readme_becomes_the_command_that_opens_it(tmp_path, catalog):
     """A notebook of an exercise may lie in a workspace, a class's folder or anywhere."""
     real = catalog.exercise("integrators")
     shutil.copytree(real.folder, tmp_path / "integrators")
@@ -110,7 +105,7 @@ def test_a_link_in_a_readme_becomes_the_command_that_opens_it(tmp_path: Path, ca
     assert told == "See it (`course lesson accuracy`), then that (`course start collisions`)."
 
 
-def test_the_functions_of_an_exercise_are_those_of_its_notebook(everything: list[Generated]) -> None:
+def test_the_functions_of_an_exercise_are_those_of_its_notebook(everything):
     for one in everything:
         if one.kind == "exercise":
             told = "".join(text(cell) for cell in cells(one.data, "markdown"))
@@ -120,7 +115,7 @@ def test_the_functions_of_an_exercise_are_those_of_its_notebook(everything: list
             assert " in this notebook" in told, "its README says nowhere: in `MODULE.py`"
 
 
-def test_links_between_notebooks_lead_to_notebooks(catalog: Catalog, everything: list[Generated]) -> None:
+def test_links_between_notebooks_lead_to_notebooks(catalog, everything):
     for whole in (everything, list(generate(catalog, layout=WORKSPACE))):
         lessons = [one for one in whole if one.kind == "lesson"]
         there = {str(one.path) for one in whole}
@@ -136,22 +131,20 @@ def test_links_between_notebooks_lead_to_notebooks(catalog: Catalog, everything:
         assert links >= 10
 
 
-def test_a_link_to_a_heading_names_it_as_jupyterlab_does(catalog: Catalog) -> None:
+def test_a_link_to_a_heading_names_it_as_jupyterlab_does(catalog):
     link = FOLDERS.links(catalog, "digital-twins")
     assert link("lesson:why-simulate#how-it-hangs-together") == "why-simulate.ipynb#How-it-hangs-together"
     assert link("https://example.org/") == "https://example.org/"
 
 
-def test_an_exercise_has_a_cell_and_a_check_for_each_function_and_stands_for_its_stub(
-    catalog: Catalog, everything: list[Generated]
-) -> None:
+def test_an_exercise_has_a_cell_and_a_check_for_each_function_and_stands_for_its_stub(catalog, everything):
     for exercise in catalog.exercises():
         one = made(everything, "exercise", exercise.id)
         tags = [cell["metadata"]["course"] for cell in cells(one.data, "code")]
         for task in exercise.task:
             roles = [tag["role"] for tag in tags if tag.get("task") == task.id]
             assert roles == ["solution", "check"], (exercise.id, task.id)
-        given, stood_for = {}, {}  # type: ignore[var-annotated]
+        given, stood_for = {}, {}
         exec(compile(exercise.stub_path.read_bytes(), "stub", "exec", dont_inherit=True), given)
         exec(
             compile(notebook_source(one.data, exercise).source, "cells", "exec", dont_inherit=True), stood_for
@@ -159,7 +152,7 @@ def test_an_exercise_has_a_cell_and_a_check_for_each_function_and_stands_for_its
         assert given.keys() - {"__doc__"} == stood_for.keys() - {"__doc__"}
 
 
-def test_the_stub_is_taken_apart_without_losing_a_line(catalog: Catalog) -> None:
+def test_the_stub_is_taken_apart_without_losing_a_line(catalog):
     for exercise in catalog.exercises():
         source = exercise.stub_path.read_text(encoding="utf-8")
         about, parts = pieces(source, {task.id for task in exercise.task})
@@ -169,7 +162,7 @@ def test_the_stub_is_taken_apart_without_losing_a_line(catalog: Catalog) -> None
         assert lost == []
 
 
-def test_a_lesson_keeps_every_block(catalog: Catalog, everything: list[Generated]) -> None:
+def test_a_lesson_keeps_every_block(catalog, everything):
     for lesson in catalog.lessons():
         blocks = read_blocks(catalog.content.lessons / f"{lesson.id}.md")
         one = made(everything, "lesson", lesson.id)
@@ -189,15 +182,13 @@ def test_a_lesson_keeps_every_block(catalog: Catalog, everything: list[Generated
                 assert lowered in whole
 
 
-def test_characters_with_a_meaning_in_markdown_are_shown_as_they_are() -> None:
+def test_characters_with_a_meaning_in_markdown_are_shown_as_they_are():
     lowering = Lowering(str)
     words = b.Paragraph(1, (b.Text("2 * 3 < 4 | a_b [x] $5 `c` \\d"),))
     assert lowering.block(words) == r"2 \* 3 \< 4 \| a\_b \[x\] \$5 \`c\` \\d"
 
 
-def test_the_quiz_does_not_tell_the_answers_and_marks_them(
-    catalog: Catalog, everything: list[Generated], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_quiz_does_not_tell_the_answers_and_marks_them(catalog, everything, capsys):
     one = made(everything, "quiz", "quiz")
     posed = Bank.of(catalog).pose(SEED)
     whole = "\n".join(map(text, cells(one.data)))
@@ -209,17 +200,15 @@ def test_the_quiz_does_not_tell_the_answers_and_marks_them(
     assert marked(SEED, dict.fromkeys(right, "")) is None
     assert "Question 1 is not answered yet." in capsys.readouterr().out
     full = marked(SEED, right)
-    assert full is not None
     assert full.summary.startswith(f"{len(posed)} of {len(posed)} right")
     wrong = marked(SEED, right | {posed[0].question: "abcd".replace(posed[0].key.letter, "")[0]})
-    assert wrong is not None
     assert f"{len(posed) - 1} of {len(posed)}" in wrong._repr_html_()
     assert posed[0].key.explanation[:40] in repr(wrong)
 
 
 def test_another_process_writes_the_same_bytes_with_another_hash_seed_and_needs_nothing_of_jupyter(
-    everything: list[Generated],
-) -> None:
+    everything,
+):
     script = (
         "import hashlib, sys\n"
         "from course.catalog.load import Catalog\n"
@@ -237,7 +226,7 @@ def test_another_process_writes_the_same_bytes_with_another_hash_seed_and_needs_
     assert done.returncode == 0, done.stderr
 
 
-def test_the_world_in_a_cell_is_laid_out_by_the_cell_and_not_by_the_window() -> None:
+def test_the_world_in_a_cell_is_laid_out_by_the_cell_and_not_by_the_window():
     pytest.importorskip("anywidget", reason="the extra `notebook` is not installed")
     from course.notebooks.widgets import style
 
@@ -246,9 +235,7 @@ def test_the_world_in_a_cell_is_laid_out_by_the_cell_and_not_by_the_window() -> 
     assert css.count("@container (max-width: 720px)") == 2
 
 
-def test_the_readme_of_an_exercise_stands_beside_it(
-    integrators: Exercise, everything: list[Generated]
-) -> None:
+def test_the_readme_of_an_exercise_stands_beside_it(integrators, everything):
     one = made(everything, "exercise", "integrators")
     whole = "\n".join(text(cell) for cell in cells(one.data, "markdown"))
     for line in integrators.readme_path.read_text(encoding="utf-8").split("\n"):

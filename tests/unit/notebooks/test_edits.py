@@ -7,15 +7,12 @@ import json
 import random
 import re
 import warnings
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
-from course.catalog.load import Catalog
-from course.catalog.models import Exercise
-from course.handed_in.notebook import RECORD, NotebookSource, notebook_source, opened
+from course.handed_in.notebook import RECORD, notebook_source, opened
 from course.physics import systems
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
@@ -39,7 +36,7 @@ EXPERIMENTS = (
 MAGICS = ("%time 1 + 1", "!ls", "files = !ls", "%matplotlib inline", "help?", "?help", "%load_ext autoreload")
 
 
-def edited(data: bytes, seed: int) -> bytes:
+def edited(data, seed):
     """A notebook after one to eight random edits.
 
     Args:
@@ -47,7 +44,7 @@ def edited(data: bytes, seed: int) -> bytes:
     """
     rng = random.Random(seed)
     notebook = json.loads(data)
-    cells: list[RawCell] = notebook["cells"]
+    cells = notebook["cells"]
     for cell in cells:
         cell["source"] = "".join(cell["source"])
     for edit in rng.choices(EDITS, k=rng.randint(1, 8)):
@@ -66,11 +63,11 @@ def edited(data: bytes, seed: int) -> bytes:
     return json.dumps(notebook, indent=indent, ensure_ascii=rng.random() < 0.5).encode()
 
 
-def new_cell(source: str, metadata: dict[str, Any] | None = None) -> RawCell:
+def new_cell(source, metadata=None):
     return {"cell_type": "code", "source": source, "metadata": metadata or {}, "outputs": []}
 
 
-def solutions(cells: list[RawCell]) -> list[int]:
+def solutions(cells):
     """Where cells stand that hold Python which counts."""
     return [
         index
@@ -80,7 +77,7 @@ def solutions(cells: list[RawCell]) -> list[int]:
     ]
 
 
-def split(cells: list[RawCell], rng: random.Random) -> None:
+def split(cells, rng):
     """Between two statements; Jupyter gives both halves the marks of the whole."""
     index = rng.choice(solutions(cells))
     text = cells[index]["source"]
@@ -98,7 +95,7 @@ def split(cells: list[RawCell], rng: random.Random) -> None:
     cells.insert(index + 1, second)
 
 
-def merge(cells: list[RawCell], rng: random.Random) -> None:
+def merge(cells, rng):
     """Two code cells become one with the marks of the first."""
     pairs = [
         index
@@ -115,35 +112,35 @@ def merge(cells: list[RawCell], rng: random.Random) -> None:
         cells[index]["source"] += "\n" + rng.choice(["", "\n"]) + cells.pop(index + 1)["source"]
 
 
-def duplicate(cells: list[RawCell], rng: random.Random) -> None:
+def duplicate(cells, rng):
     """Jupyter gives the copy another id and leaves its marks."""
     index = rng.choice(solutions(cells))
     cells.insert(rng.randint(0, len(cells)), copy.deepcopy(cells[index]) | {"id": f"{rng.random()}"})
 
 
-def shuffle(cells: list[RawCell], rng: random.Random) -> None:
+def shuffle(cells, rng):
     rng.shuffle(cells)
 
 
-def move(cells: list[RawCell], rng: random.Random) -> None:
+def move(cells, rng):
     cells.insert(rng.randrange(len(cells)), cells.pop(rng.randrange(len(cells))))
 
 
-def strip_one(cells: list[RawCell], rng: random.Random) -> None:
+def strip_one(cells, rng):
     rng.choice(cells)["metadata"] = {}
 
 
-def strip_all(cells: list[RawCell], rng: random.Random) -> None:
+def strip_all(cells, rng):
     for cell in cells:
         cell["metadata"] = {}
 
 
-def strip_ids(cells: list[RawCell], rng: random.Random) -> None:
+def strip_ids(cells, rng):
     for cell in cells:
         cell.pop("id", None)
 
 
-def remove(cells: list[RawCell], rng: random.Random) -> None:
+def remove(cells, rng):
     """Any cell but those that count."""
     counted = solutions(cells)
     others = [index for index in range(len(cells)) if index not in counted]
@@ -151,7 +148,7 @@ def remove(cells: list[RawCell], rng: random.Random) -> None:
         del cells[rng.choice(others)]
 
 
-def run(cells: list[RawCell], rng: random.Random) -> None:
+def run(cells, rng):
     """Outputs, some of them large, and other metadata that Jupyter writes."""
     for number, cell in enumerate(cells):
         if cell["cell_type"] == "code" and rng.random() < 0.5:
@@ -161,35 +158,35 @@ def run(cells: list[RawCell], rng: random.Random) -> None:
             cell["metadata"] = {**cell["metadata"], "collapsed": True, "scrolled": False, "tags": ["mine"]}
 
 
-def add_magic(cells: list[RawCell], rng: random.Random) -> None:
+def add_magic(cells, rng):
     cell = cells[rng.choice(solutions(cells))]
     magic = rng.choice(MAGICS)
     cell["source"] = f"{magic}\n{cell['source']}" if rng.random() < 0.5 else f"{cell['source']}\n{magic}"
 
 
-def time_it(cells: list[RawCell], rng: random.Random) -> None:
+def time_it(cells, rng):
     cell = cells[rng.choice(solutions(cells))]
     if not cell["source"].startswith("%%"):
         cell["source"] = f"{rng.choice(['%%time', '%%capture out', '%%prun -q'])}\n{cell['source']}"
 
 
-def experiment(cells: list[RawCell], rng: random.Random) -> None:
+def experiment(cells, rng):
     cells.insert(rng.randint(0, len(cells)), new_cell(rng.choice(EXPERIMENTS)))
 
 
-def line_ends(cells: list[RawCell], rng: random.Random) -> None:
+def line_ends(cells, rng):
     cell = rng.choice(cells)
     cell["source"] = cell["source"].replace("\r\n", "\n").replace("\n", "\r\n")
 
 
-def draft(cells: list[RawCell], rng: random.Random) -> None:
+def draft(cells, rng):
     """An older, wrong version of a function in front of everything."""
     name = rng.choice(["rk4_step", "integrate", "explicit_euler_step"])
     marks = next((cell["metadata"] for cell in cells if f"def {name}" in "".join(cell["source"])), {})
     cells.insert(0, new_cell(f"def {name}(*anything):\n    raise NotImplementedError", copy.deepcopy(marks)))
 
 
-EDITS: tuple[Callable[[list[RawCell], random.Random], None], ...] = (
+EDITS = (
     split, merge, duplicate, shuffle, move, strip_one, strip_all, strip_ids, remove, run, add_magic, time_it,
     experiment, line_ends,
 )  # fmt: skip
@@ -198,14 +195,14 @@ EDITS: tuple[Callable[[list[RawCell], random.Random], None], ...] = (
 STEPS = ("explicit_euler_step", "semi_implicit_euler_step", "velocity_verlet_step", "rk4_step")
 
 
-def handed_in(module: NotebookSource, exercise: Exercise) -> Submission:
+def handed_in(module, exercise):
     """A notebook as a grading run reads it back."""
     return opened({exercise.module: module.source, RECORD: module.record()}, exercise)
 
 
-def behaviour(source: bytes) -> list[Any]:
+def behaviour(source):
     """What the functions of a module give, to the last bit."""
-    names: dict[str, Any] = {}
+    names = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # about escapes and the like in strings
         exec(compile(source, "integrators.py", "exec", dont_inherit=True), names)
@@ -217,9 +214,7 @@ def behaviour(source: bytes) -> list[Any]:
 
 
 @pytest.mark.parametrize("first", range(0, 500, 125))
-def test_500_random_edits_leave_the_code_what_it_was(
-    solved: bytes, solution: str, integrators: Exercise, first: int
-) -> None:
+def test_500_random_edits_leave_the_code_what_it_was(solved, solution, integrators, first):
     right = behaviour(solution.encode())
     for seed in range(first, first + 125):
         module = notebook_source(edited(solved, seed), integrators)
@@ -227,17 +222,13 @@ def test_500_random_edits_leave_the_code_what_it_was(
 
 
 @pytest.mark.parametrize("function", STEPS)
-def test_a_wrong_function_stays_wrong(
-    solved: bytes, solution: str, integrators: Exercise, function: str
-) -> None:
+def test_a_wrong_function_stays_wrong(solved, solution, integrators, function):
     """The comparison above can fail."""
     wrong = f"{solution}\n\ndef {function}(accel, t, q, v, h):\n    return q + h * v, v\n"
     assert behaviour(wrong.encode()) != behaviour(notebook_source(solved, integrators).source)
 
 
-def test_the_same_code_scores_the_same_as_a_file_and_as_a_notebook(
-    solved: bytes, solution: str, integrators: Exercise, catalog: Catalog
-) -> None:
+def test_the_same_code_scores_the_same_as_a_file_and_as_a_notebook(solved, solution, integrators, catalog):
     """Some of its checks pass and some fail."""
     right, wrong = "h / 6 * (dq1", "h / 5 * (dq1"
     assert right in solution
@@ -254,9 +245,7 @@ def test_the_same_code_scores_the_same_as_a_file_and_as_a_notebook(
             assert as_notebook.warnings == module.notes
 
 
-def test_an_error_in_a_notebook_is_told_by_its_cell(
-    solved: bytes, integrators: Exercise, catalog: Catalog
-) -> None:
+def test_an_error_in_a_notebook_is_told_by_its_cell(solved, integrators, catalog):
     raising = solved.replace(b"return q + h * v, v + h * accel(t, q, v)", b"return q / (0 * h).nothing")
     assert raising != solved
     module = notebook_source(raising, integrators)

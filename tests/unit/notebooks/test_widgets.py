@@ -4,7 +4,6 @@ import asyncio
 import json
 from pathlib import Path
 from threading import Thread
-from typing import Any
 
 import pytest
 
@@ -24,11 +23,11 @@ from course.reading.record import InProgress
 PATIENCE = 60
 
 
-def said_by_a_page(widget: Any, *messages: dict[str, Any]) -> None:
+def said_by_a_page(widget, *messages):
     """Messages as a kernel hands them on from a subshell: on a thread without a loop."""
-    troubles: list[BaseException] = []
+    troubles = []
 
-    def say() -> None:
+    def say():
         try:
             for message in messages:
                 widget._handle_custom_msg(message, [])
@@ -41,13 +40,13 @@ def said_by_a_page(widget: Any, *messages: dict[str, Any]) -> None:
     assert not troubles
 
 
-def test_a_world_in_a_cell_moves_when_a_page_on_another_thread_says_so() -> None:
-    async def cell() -> tuple[float, list[str]]:
+def test_a_world_in_a_cell_moves_when_a_page_on_another_thread_says_so():
+    async def cell():
         widget = play("head-on")
         assert isinstance(widget, Sandbox)
-        kinds: list[str] = []
+        kinds = []
 
-        def send(message: dict[str, Any], buffers: Any = None) -> None:
+        def send(message, buffers=None):
             kinds.append(message["kind"])
             if message["kind"] == "numbers":
                 said_by_a_page(widget, {"kind": "seen"})
@@ -69,22 +68,22 @@ def test_a_world_in_a_cell_moves_when_a_page_on_another_thread_says_so() -> None
     assert {"words", "numbers"} <= set(kinds)
 
 
-def test_a_script_gets_a_film_for_there_is_no_loop_to_live_in() -> None:
+def test_a_script_gets_a_film_for_there_is_no_loop_to_live_in():
     assert isinstance(play("head-on"), Film)
 
 
 @pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
+def workspace(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert app.run(("init", "work")) == 0
     monkeypatch.chdir(tmp_path / "work")
     return Workspace.find(Path.cwd())
 
 
-def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(workspace: Workspace) -> None:
-    shown: list[tuple[str, bool]] = []
+def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(workspace):
+    shown = []
 
-    async def cell() -> None:
+    async def cell():
         widget = predict("accuracy", 1)
         assert isinstance(widget, Predict)
         widget._open = lambda *, update=True: shown.append((widget.asked.opened, update))
@@ -104,13 +103,11 @@ def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(worksp
     kept = InProgress(read_script(lesson), workspace.store.events("", "accuracy"))
     question = kept.script.questions[0]
     said = kept.prediction(question)
-    assert said is not None
     assert said.text == "it *grows*"
     assert len(workspace.store.events("prediction", "accuracy")) == 1
 
     asked = LessonPrediction("numerical-integration", 1)
     asked.say("\ud83d and " + "x" * 10**6)  # whatever a page sends
-    assert asked.said is not None
     assert asked.said.startswith("? and xx")
     assert len(asked.said) <= 4000
 
@@ -119,10 +116,10 @@ def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(worksp
     assert again._repr_markdown_().startswith(text)
 
 
-def test_a_prediction_is_compared_once_its_answer_is_open(workspace: Workspace) -> None:
-    async def cell() -> list[Any]:
+def test_a_prediction_is_compared_once_its_answer_is_open(workspace):
+    async def cell():
         widget = predict("accuracy", 1)
-        told: list[Any] = []
+        told = []
         widget._open = lambda *, update=True: None
         widget.send = lambda message, buffers=None: told.append(message)
         said_by_a_page(widget, {"kind": "predict", "text": "it grows"}, {"kind": "judge", "word": "best"})
@@ -139,7 +136,7 @@ def test_a_prediction_is_compared_once_its_answer_is_open(workspace: Workspace) 
     assert "How did it do?" not in shown
 
 
-def test_a_lesson_counts_as_read_once_its_end_is_run_and_no_prediction_is_open(workspace: Workspace) -> None:
+def test_a_lesson_counts_as_read_once_its_end_is_run_and_no_prediction_is_open(workspace):
     lesson = read_script(Catalog().lesson("accuracy"))
     assert repr(finish("accuracy")).startswith(f"{len(lesson.questions)} predictions are open")
     assert workspace.store.events("lesson") == ()
@@ -149,7 +146,7 @@ def test_a_lesson_counts_as_read_once_its_end_is_run_and_no_prediction_is_open(w
     assert [event.subject for event in workspace.store.events("lesson")] == ["accuracy"]
 
 
-def test_without_widgets_the_text_in_the_cell_is_the_prediction(workspace: Workspace) -> None:
+def test_without_widgets_the_text_in_the_cell_is_the_prediction(workspace):
     empty = predict("accuracy", 1, "\n\n")
     assert empty.said is None
     assert "Answer." not in empty._repr_markdown_()
@@ -161,22 +158,18 @@ def test_without_widgets_the_text_in_the_cell_is_the_prediction(workspace: Works
         predict("accuracy", 99)
 
 
-def test_outside_of_a_workspace_an_answer_opens_and_nothing_is_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_outside_of_a_workspace_an_answer_opens_and_nothing_is_kept(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert "Answer." in predict("accuracy", 1, "it grows")._repr_markdown_()
     assert list(tmp_path.iterdir()) == []
     assert predict("accuracy", 1).said is None
 
 
-def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(
-    workspace: Workspace, capsys: pytest.CaptureFixture[str]
-) -> None:
-    sent: list[dict[str, Any]] = []
-    shown: list[bool] = []
+def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(workspace, capsys):
+    sent = []
+    shown = []
 
-    async def cell(letters: dict[str, str]) -> QuizForm:
+    async def cell(letters):
         shown.clear()
         widget = take()
         assert isinstance(widget, QuizForm)
@@ -193,7 +186,6 @@ def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(
         return widget
 
     first = asyncio.run(cell({}))
-    assert first.taken.result is not None
     assert first.taken.result.passed
     asked = sent[0]["questions"]
     assert [one["id"] for one in asked] == [one.question for one in first.taken.posed]
@@ -212,7 +204,6 @@ def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(
     wrong = next(choice for choice in second.posed[0].choices if not choice.right)
     asyncio.run(cell({name: wrong.letter}))  # it goes on with the attempt that was begun
     assert second.finish({one.question: one.key.letter for one in second.posed})
-    assert second.result is not None
     assert (second.result.score, "finished elsewhere" in second.note) == (len(asked) - 1, True)
     app.run(("quiz", "history", "--json"))
     reply = json.loads(capsys.readouterr().out)

@@ -1,7 +1,5 @@
 """Contact as geometry, and its solver: blows that keep what they must, loads that are carried."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -16,20 +14,20 @@ from course.physics.contact.impulses import Impulses, Motion, normal_speed, solv
 ORIGIN = np.zeros(3)
 
 
-def test_the_gap_of_two_spheres_and_its_sign() -> None:
+def test_the_gap_of_two_spheres_and_its_sign():
     normal, gap = meet(ORIGIN, np.array([0.0, 3.0, 0.0]), 1.0)
     assert gap == pytest.approx(2.0)
     assert normal.tolist() == [0.0, 1.0, 0.0]
     assert meet(ORIGIN, np.array([0.9, 0.0, 0.0]), 1.0)[1] == pytest.approx(-0.1)
 
 
-def test_centres_that_coincide_still_have_a_unit_normal() -> None:
+def test_centres_that_coincide_still_have_a_unit_normal():
     normal, gap = meet(np.ones(3), np.ones(3), 1.0)
     assert np.linalg.norm(normal) == 1.0
     assert gap == -1.0
 
 
-def test_a_sphere_below_a_plane_overlaps_it_by_more_than_its_radius() -> None:
+def test_a_sphere_below_a_plane_overlaps_it_by_more_than_its_radius():
     assert meet_plane(np.array([0.0, 0.0, -1.0]), 0.5, Plane())[1] == pytest.approx(-1.5)
     tilted = Plane((0.0, 0.0, 0.0), (0.6, 0.0, 0.8))
     normal, gap = meet_plane(np.array([1.0, 0.0, 1.0]), 0.5, tilted)
@@ -38,12 +36,12 @@ def test_a_sphere_below_a_plane_overlaps_it_by_more_than_its_radius() -> None:
 
 
 @pytest.mark.parametrize("surface", [(-0.1, 0.0), (1.1, 0.0), (0.5, -1.0), (math.nan, 0.0), (0.5, math.inf)])
-def test_impossible_surfaces_are_refused(surface: tuple[float, float]) -> None:
+def test_impossible_surfaces_are_refused(surface):
     with pytest.raises(ValueError, match=r"restitution|friction"):
         Surface(*surface)
 
 
-def test_a_plane_needs_a_unit_normal() -> None:
+def test_a_plane_needs_a_unit_normal():
     with pytest.raises(ValueError, match="unit vector"):
         Plane(normal=(0.0, 0.0, 2.0))
 
@@ -63,17 +61,15 @@ class Blow:
     rub: np.ndarray
     masses: tuple[float, float]
 
-    def momentum(self) -> np.ndarray:
+    def momentum(self):
         return self.masses[0] * self.velocity[0] + self.masses[1] * self.velocity[1]
 
-    def energy(self) -> float:
+    def energy(self):
         sides = zip(self.masses, self.velocity, self.spin, strict=True)
         return sum(0.5 * m * (v @ v + 0.4 * RADIUS**2 * (w @ w)) for m, v, w in sides)
 
 
-def strike(
-    normal: np.ndarray, v: tuple[object, object], m: tuple[float, float], e: float, mu: float, spins: bool
-) -> tuple[Blow, Blow]:
+def strike(normal, v, m, e, mu, spins):
     """The second ball lies in the direction of the normal; both of radius 0.5 m, and not turning."""
     velocity = np.array(v, dtype=float)
     give = 1.0 / np.array(m)
@@ -96,9 +92,7 @@ def strike(
 
 
 @given(vectors, vectors, vectors, masses, masses, st.floats(0, 1), st.floats(0, 2), st.booleans())
-def test_a_blow_keeps_momentum_and_never_makes_energy(
-    place: np.ndarray, va: np.ndarray, vb: np.ndarray, ma: float, mb: float, e: float, mu: float, spins: bool
-) -> None:
+def test_a_blow_keeps_momentum_and_never_makes_energy(place, va, vb, ma, mb, e, mu, spins):
     assume(np.linalg.norm(place) > 1e-3)
     n = place / np.linalg.norm(place)
     before, after = strike(n, (va, vb), (ma, mb), e, mu, spins)
@@ -118,9 +112,7 @@ def test_a_blow_keeps_momentum_and_never_makes_energy(
 
 
 @given(vectors, vectors, vectors, st.floats(0, 1), st.floats(0, 2))
-def test_a_blow_is_the_same_seen_from_a_moving_train(
-    va: np.ndarray, vb: np.ndarray, train: np.ndarray, e: float, mu: float
-) -> None:
+def test_a_blow_is_the_same_seen_from_a_moving_train(va, vb, train, e, mu):
     assume(abs(va[0] - vb[0]) > 1e-6)
     n = np.array([1.0, 0.0, 0.0])
     _, still = strike(n, (va, vb), (2.0, 1.0), e, mu, True)
@@ -130,7 +122,7 @@ def test_a_blow_is_the_same_seen_from_a_moving_train(
         np.testing.assert_allclose(moving.spin[k], still.spin[k], atol=1e-10)
 
 
-def test_enough_friction_sticks_and_takes_two_sevenths_of_a_solid_balls_slip() -> None:
+def test_enough_friction_sticks_and_takes_two_sevenths_of_a_solid_balls_slip():
     n = np.array([0.0, 0.0, -1.0])
     _, after = strike(n, ([1, 0, -1], [0, 0, 0]), (1.0, math.inf), 0.0, 10.0, True)
     v, w = after.velocity[0], after.spin[0]
@@ -138,7 +130,7 @@ def test_enough_friction_sticks_and_takes_two_sevenths_of_a_solid_balls_slip() -
     np.testing.assert_allclose(v + np.cross(w, RADIUS * n), 0.0, atol=1e-14)
 
 
-def test_a_blow_touches_only_the_runs_it_is_told_to() -> None:
+def test_a_blow_touches_only_the_runs_it_is_told_to():
     velocity = np.zeros((2, 3, 3))
     velocity[0, :, 2] = -1.0
     motion = Motion(velocity, np.zeros_like(velocity), np.array([1.0, 0.0]), np.zeros(2))
@@ -151,7 +143,7 @@ def test_a_blow_touches_only_the_runs_it_is_told_to() -> None:
 # -- many contacts -----------------------------------------------------------------------------------------
 
 
-def stack(boxes: int) -> tuple[list[tuple[int, int]], np.ndarray, Motion]:
+def stack(boxes):
     """Boxes of 1 kg that gravity has just given -1 m/s each; body 0 is the ground."""
     pairs = [(k, k + 1) for k in range(boxes)]
     velocity = np.zeros((boxes + 1, 3))
@@ -164,7 +156,7 @@ def stack(boxes: int) -> tuple[list[tuple[int, int]], np.ndarray, Motion]:
     )
 
 
-def test_a_stack_that_has_been_solved_takes_one_sweep_the_next_time() -> None:
+def test_a_stack_that_has_been_solved_takes_one_sweep_the_next_time():
     pairs, normal, motion = stack(8)
     impulses = Impulses(np.zeros(8), np.zeros((8, 3)))
     cold = solve(pairs, normal, motion, impulses, np.ones(8, dtype=bool), 0.0, 0.0)
@@ -175,7 +167,7 @@ def test_a_stack_that_has_been_solved_takes_one_sweep_the_next_time() -> None:
 
 
 @given(st.integers(0, 10_000))
-def test_speeds_and_impulses_are_complementary(seed: int) -> None:
+def test_speeds_and_impulses_are_complementary(seed):
     """A ball among four others in the plane: some contacts press, the others separate, none does both."""
     rng = np.random.default_rng(seed)
     angles = 0.5 * np.pi * np.arange(4) + rng.uniform(-0.4, 0.4, 4)
@@ -194,7 +186,7 @@ def test_speeds_and_impulses_are_complementary(seed: int) -> None:
     np.testing.assert_allclose(momentum.sum(axis=0), 0.0, atol=1e-12)
 
 
-def test_friction_is_round_so_no_direction_slides_more_easily() -> None:
+def test_friction_is_round_so_no_direction_slides_more_easily():
     """A pyramid would let a block through at a direction between its edges; a cone does not care."""
     slid = []
     for angle in np.linspace(0.0, 0.5 * np.pi, 7):

@@ -1,7 +1,5 @@
 """The reference that every order is measured against is itself compared with closed forms."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Invariants, and the instruments that measure methods."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

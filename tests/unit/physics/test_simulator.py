@@ -1,7 +1,5 @@
 """The engine against closed forms: flight, impact, rest, sliding, rolling, and many runs at once."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 
@@ -14,39 +12,39 @@ from course.physics.body import Body
 from course.physics.contact import Plane, Surface
 from course.physics.integrators import STEPPERS
 from course.physics.invariants import convergence_order
-from course.physics.simulator import Recording, Simulator, step_count
+from course.physics.simulator import Simulator, step_count
 from course.physics.state import RigidBodyState
 
 few = settings(max_examples=10)
 
 
-def ball(position: object, velocity: object = (0, 0, 0), **options: object) -> Body:
-    mass, radius = float(options.pop("mass", 1.0)), float(options.pop("radius", 0.5))  # type: ignore[arg-type]
-    return Body.sphere(mass, radius, RigidBodyState.of(position, velocity), **options)  # type: ignore[arg-type]
+def ball(position, velocity=(0, 0, 0), **options):
+    mass, radius = float(options.pop("mass", 1.0)), float(options.pop("radius", 0.5))
+    return Body.sphere(mass, radius, RigidBodyState.of(position, velocity), **options)
 
 
 # -- counting steps ----------------------------------------------------------------------------------------
 
 
-def test_a_duration_just_short_of_whole_steps_loses_none() -> None:
+def test_a_duration_just_short_of_whole_steps_loses_none():
     assert step_count(0.29, 0.01) == 29
     assert step_count(0.0, 0.01) == 0
 
 
 @pytest.mark.parametrize(("duration", "h"), [(1.0, 0.0), (1.0, -1.0), (1.0, math.nan), (1.0, math.inf)])
-def test_a_step_that_is_no_step_is_refused(duration: float, h: float) -> None:
+def test_a_step_that_is_no_step_is_refused(duration, h):
     with pytest.raises(ValueError, match="step must be a positive"):
         step_count(duration, h)
 
 
 @pytest.mark.parametrize("duration", [-1.0, math.nan, math.inf])
-def test_a_duration_that_is_none_is_refused(duration: float) -> None:
+def test_a_duration_that_is_none_is_refused(duration):
     with pytest.raises(ValueError, match="duration must be"):
         step_count(duration, 0.1)
 
 
 @given(st.integers(1, 5000), st.floats(1e-4, 1.0))
-def test_values_named_as_near_do_divide(n: int, h: float) -> None:
+def test_values_named_as_near_do_divide(n, h):
     duration = (n + 0.37) * h
     with pytest.raises(ValueError, match="does not divide") as caught:
         step_count(duration, h)
@@ -57,7 +55,7 @@ def test_values_named_as_near_do_divide(n: int, h: float) -> None:
         assert step_count(duration, float(above) / float(below or 1)) == count
 
 
-def test_times_are_multiples_of_the_step_the_start_is_recorded_and_a_second_run_goes_on() -> None:
+def test_times_are_multiples_of_the_step_the_start_is_recorded_and_a_second_run_goes_on():
     engine = Simulator([ball([0, 0, 10])], h=0.01)
     record = engine.run(5.0)
     assert record.t[0] == 0.0
@@ -72,7 +70,7 @@ def test_times_are_multiples_of_the_step_the_start_is_recorded_and_a_second_run_
 
 @few
 @given(st.floats(0.5, 20), st.floats(-5, 5), st.sampled_from(["velocity_verlet", "rk4"]))
-def test_a_ball_meets_the_ground_when_the_closed_form_says(height: float, up: float, method: str) -> None:
+def test_a_ball_meets_the_ground_when_the_closed_form_says(height, up, method):
     body = Body(1.0, RigidBodyState.of([0, 0, height], [1, 0, up]))
     record = Simulator([body], h=0.1, stepper=STEPPERS[method]).run(4.0)
     due = (up + math.sqrt(up**2 + 2 * 9.81 * height)) / 9.81
@@ -82,7 +80,7 @@ def test_a_ball_meets_the_ground_when_the_closed_form_says(height: float, up: fl
 
 @few
 @given(st.floats(0.3, 0.95), st.floats(0.5, 5))
-def test_a_ball_rebounds_to_e_squared_of_its_height(e: float, drop: float) -> None:
+def test_a_ball_rebounds_to_e_squared_of_its_height(e, drop):
     record = Simulator([ball([0, 0, 0.5 + drop])], h=0.02, surface=Surface(e)).run(2.0)
     fall = math.sqrt(2 * drop / 9.81)
     first = (record.t > fall) & (record.t < fall * (1 + 2 * e))
@@ -93,19 +91,19 @@ def test_a_ball_rebounds_to_e_squared_of_its_height(e: float, drop: float) -> No
     assert record.position[:, 0, 2].min() >= 0.5 - 1e-12
 
 
-def test_an_elastic_ball_bounces_for_ever_at_its_own_height() -> None:
+def test_an_elastic_ball_bounces_for_ever_at_its_own_height():
     record = Simulator([ball([0, 0, 1.5])], h=0.02).run(10.0)
     np.testing.assert_allclose(record.energy(), record.energy()[0], rtol=1e-12)
 
 
-def test_a_ball_at_rest_stays_at_rest() -> None:
+def test_a_ball_at_rest_stays_at_rest():
     record = Simulator([ball([0, 0, 0.5])], h=0.01, surface=Surface(0.5, 0.5)).run(1.0)
     assert np.all(record.position[:, 0] == [0.0, 0.0, 0.5])
 
 
 @few
 @given(st.floats(0.5, 4), st.floats(0.1, 1.0))
-def test_a_sliding_block_stops_where_the_closed_form_says(speed: float, mu: float) -> None:
+def test_a_sliding_block_stops_where_the_closed_form_says(speed, mu):
     body = ball([0, 0, 0.5], [speed, 0, 0], spins=False)
     assume(speed / (mu * 9.81) < 1.5)
     record = Simulator([body], h=0.005, surface=Surface(0.0, mu)).run(1.5)
@@ -114,7 +112,7 @@ def test_a_sliding_block_stops_where_the_closed_form_says(speed: float, mu: floa
     assert record.position[-1, 0, 0] == pytest.approx(exact, abs=mu * 9.81 * 0.005**2)
 
 
-def test_a_ball_thrown_flat_ends_rolling_at_five_sevenths_of_its_speed() -> None:
+def test_a_ball_thrown_flat_ends_rolling_at_five_sevenths_of_its_speed():
     record = Simulator([ball([0, 0, 0.5], [2, 0, 0])], h=0.01, surface=Surface(0.0, 0.3)).run(2.0)
     assert record.velocity[-1, 0, 0] == pytest.approx(10 / 7, rel=1e-9)
     assert record.angular_velocity[-1, 0, 1] == pytest.approx(10 / 7 / 0.5, rel=1e-9)
@@ -123,7 +121,7 @@ def test_a_ball_thrown_flat_ends_rolling_at_five_sevenths_of_its_speed() -> None
 # -- rest --------------------------------------------------------------------------------------------------
 
 
-def on_a_slope(angle_deg: float, mu: float, method: str, *, spins: bool) -> Recording:
+def on_a_slope(angle_deg, mu, method, *, spins):
     angle = math.radians(angle_deg)
     slope = Plane(normal=(math.sin(angle), 0.0, math.cos(angle)))
     body = ball(0.5 * np.array(slope.normal), spins=spins)
@@ -132,7 +130,7 @@ def on_a_slope(angle_deg: float, mu: float, method: str, *, spins: bool) -> Reco
 
 
 @pytest.mark.parametrize("method", STEPPERS)
-def test_what_sticks_on_a_slope_does_not_creep(method: str) -> None:
+def test_what_sticks_on_a_slope_does_not_creep(method):
     record = on_a_slope(20, 1.0, method, spins=False)
     # Solved after the move, as it used to be, friction lets it creep g sin(20°) h/2 a second: 16.8 mm.
     assert np.max(np.abs(record.position - record.position[0])) < 1e-12
@@ -140,9 +138,7 @@ def test_what_sticks_on_a_slope_does_not_creep(method: str) -> None:
 
 @settings(max_examples=8)
 @given(st.floats(5, 60), st.floats(0.0, 1.5), st.booleans())
-def test_on_a_slope_a_body_stays_slides_or_rolls_as_the_closed_form_says(
-    angle_deg: float, mu: float, spins: bool
-) -> None:
+def test_on_a_slope_a_body_stays_slides_or_rolls_as_the_closed_form_says(angle_deg, mu, spins):
     angle = math.radians(angle_deg)
     along, across = 9.81 * math.sin(angle), 9.81 * math.cos(angle)
     # Friction takes up to mu times the pressing force: what holds it, or what makes it roll.
@@ -152,7 +148,7 @@ def test_on_a_slope_a_body_stays_slides_or_rolls_as_the_closed_form_says(
     assert way == pytest.approx(0.5 * (along - held) * 1.0**2, abs=1e-9)
 
 
-def test_a_stack_of_ten_stands() -> None:
+def test_a_stack_of_ten_stands():
     bodies = [ball([0, 0, 0.5 + k]) for k in range(10)]
     engine = Simulator(bodies, h=0.01, surface=Surface(0.5, 0.5))
     record = engine.run(2.0)
@@ -162,12 +158,12 @@ def test_a_stack_of_ten_stands() -> None:
     assert np.max(np.abs(record.velocity[100:])) < 1e-6
 
 
-def test_a_pyramid_of_balls_stands_by_friction_alone_and_falls_without() -> None:
+def test_a_pyramid_of_balls_stands_by_friction_alone_and_falls_without():
     third = math.sqrt(3) / 6
     base = np.array([[0, 0, 0.5], [1, 0, 0.5], [0.5, 3 * third, 0.5]])
     places = [*base, [0.5, third, 0.5 + math.sqrt(2 / 3)]]
 
-    def moved(mu: float) -> float:
+    def moved(mu):
         engine = Simulator([ball(place) for place in places], h=0.01, surface=Surface(0.0, mu))
         record = engine.run(0.3)
         return float(np.max(np.abs(record.position[-1] - record.position[0])))
@@ -176,7 +172,7 @@ def test_a_pyramid_of_balls_stands_by_friction_alone_and_falls_without() -> None
     assert moved(0.1) > 0.02
 
 
-def test_a_stack_that_falls_comes_to_rest_and_gains_no_energy() -> None:
+def test_a_stack_that_falls_comes_to_rest_and_gains_no_energy():
     bodies = [ball([0, 0, 1.5 + k]) for k in range(5)]
     record = Simulator(bodies, h=0.01, surface=Surface(0.3, 0.4)).run(3.0)
     np.testing.assert_allclose(record.position[-1, :, 2], 0.5 + np.arange(5), atol=1e-5)
@@ -184,20 +180,20 @@ def test_a_stack_that_falls_comes_to_rest_and_gains_no_energy() -> None:
 
 
 @pytest.mark.parametrize("moving", [1, 2, 4])
-def test_along_a_row_of_balls_as_many_leave_as_arrive(moving: int) -> None:
+def test_along_a_row_of_balls_as_many_leave_as_arrive(moving):
     bodies = [ball([k - (0.5 if k < moving else 0.0), 0, 0], [float(k < moving), 0, 0]) for k in range(5)]
     record = Simulator(bodies, h=0.01, gravity=0.0, ground=None).run(1.0)
     expected = [float(k >= 5 - moving) for k in range(5)]
     np.testing.assert_allclose(record.velocity[-1, :, 0], expected, atol=1e-12)
 
 
-def test_a_light_ball_on_a_heavy_one_flies_off_at_nearly_three_times_the_speed() -> None:
+def test_a_light_ball_on_a_heavy_one_flies_off_at_nearly_three_times_the_speed():
     bodies = [ball([0, 0, 1.5]), ball([0, 0, 2.25], mass=1e-6, radius=0.25)]
     record = Simulator(bodies, h=0.01).run(0.7)
     assert record.velocity[:, 1, 2].max() == pytest.approx(3 * math.sqrt(2 * 9.81 * 1.0), rel=0.01)
 
 
-def test_a_heap_of_balls_keeps_its_momentum_across_and_ends_without_overlap() -> None:
+def test_a_heap_of_balls_keeps_its_momentum_across_and_ends_without_overlap():
     rng = np.random.default_rng(0)
     bodies = [ball(place, radius=0.25) for place in rng.uniform([-1, -1, 1], [1, 1, 8], (12, 3))]
     record = Simulator(bodies, h=0.01, surface=Surface(0.3, 0.0)).run(2.0)
@@ -211,12 +207,12 @@ def test_a_heap_of_balls_keeps_its_momentum_across_and_ends_without_overlap() ->
     assert np.diff(record.energy()).max() < 1e-5 * record.energy()[0]
 
 
-def test_what_touches_from_the_start_has_met_at_time_0() -> None:
+def test_what_touches_from_the_start_has_met_at_time_0():
     record = Simulator([ball([0, 0, 0.5])], h=0.01, surface=Surface(0.5)).run(0.1)
     assert record.ground_time[0] == 0.0
 
 
-def test_a_body_that_is_no_sphere_is_refused_when_it_touches_and_not_before() -> None:
+def test_a_body_that_is_no_sphere_is_refused_when_it_touches_and_not_before():
     body = Body(1.0, RigidBodyState.of([0, 0, 1]), inertia=[1, 1, 1.5], radius=0.1)
     engine = Simulator([body], h=0.01)
     engine.run(0.1)
@@ -225,7 +221,7 @@ def test_a_body_that_is_no_sphere_is_refused_when_it_touches_and_not_before() ->
 
 
 @pytest.mark.parametrize("gravity", [math.nan, math.inf, -math.inf])
-def test_a_gravity_that_is_no_number_is_refused(gravity: float) -> None:
+def test_a_gravity_that_is_no_number_is_refused(gravity):
     with pytest.raises(ValueError, match="Gravity must be a finite number"):
         Simulator([ball([0, 0, 1])], h=0.01, gravity=gravity)
 
@@ -235,9 +231,7 @@ def test_a_gravity_that_is_no_number_is_refused(gravity: float) -> None:
 
 @few
 @given(st.floats(0.1, 10), st.floats(0.1, 10), st.floats(0, 1), st.floats(1, 500), st.floats(-500, -1))
-def test_a_collision_keeps_momentum_and_restitution_at_any_speed(
-    m1: float, m2: float, e: float, v1: float, v2: float
-) -> None:
+def test_a_collision_keeps_momentum_and_restitution_at_any_speed(m1, m2, e, v1, v2):
     bodies = [ball([-5, 0, 0], [v1, 0, 0], mass=m1), ball([5, 0, 0], [v2, 0, 0], mass=m2)]
     # Up to 50 m a step: nothing tunnels.
     record = Simulator(bodies, h=0.05, gravity=0.0, ground=None, surface=Surface(e)).run(5.0)
@@ -248,14 +242,14 @@ def test_a_collision_keeps_momentum_and_restitution_at_any_speed(
     np.testing.assert_allclose(momentum, momentum[0], atol=1e-9 * (m1 * v1 - m2 * v2))
 
 
-def test_balls_that_graze_past_each_other_do_not_touch() -> None:
+def test_balls_that_graze_past_each_other_do_not_touch():
     bodies = [ball([-5, 0, 0], [2, 0, 0]), ball([5, 1.001, 0], [-2, 0, 0])]
     record = Simulator(bodies, h=0.01, gravity=0.0, ground=None).run(5.0)
     assert math.isnan(record.first_contact[0, 1])
     assert np.all(record.velocity[-1] == record.velocity[0])
 
 
-def test_contacts_may_be_switched_off_and_the_ground_stays() -> None:
+def test_contacts_may_be_switched_off_and_the_ground_stays():
     bodies = [ball([-5, 0, 0.5], [2, 0, 0]), ball([5, 0, 0.5], [-2, 0, 0])]
     record = Simulator(bodies, h=0.01, contacts=False).run(5.0)
     np.testing.assert_allclose(record.position[-1, :, 0], [5.0, -5.0], atol=1e-12)
@@ -268,8 +262,8 @@ def test_contacts_may_be_switched_off_and_the_ground_stays() -> None:
 @pytest.mark.parametrize(
     ("method", "order"), [("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)]
 )
-def test_a_spring_between_two_bodies_swings_with_the_order_of_the_method(method: str, order: int) -> None:
-    def spring(t: float, bodies: list[Body]) -> None:
+def test_a_spring_between_two_bodies_swings_with_the_order_of_the_method(method, order):
+    def spring(t, bodies):
         pull = 4.0 * (bodies[1].state.position - bodies[0].state.position)
         bodies[0].add_force(pull)
         bodies[1].add_force(-pull)
@@ -287,8 +281,8 @@ def test_a_spring_between_two_bodies_swings_with_the_order_of_the_method(method:
     assert convergence_order(hs, errors) == pytest.approx(order, abs=0.15)
 
 
-def test_a_torque_acts_from_the_step_in_which_it_is_given() -> None:
-    def motor(t: float, bodies: list[Body]) -> None:
+def test_a_torque_acts_from_the_step_in_which_it_is_given():
+    def motor(t, bodies):
         bodies[0].add_torque([0.0, 0.0, 1.0])
 
     body = Body(1.0, RigidBodyState.of([0, 0, 5]), inertia=1.0)
@@ -297,10 +291,10 @@ def test_a_torque_acts_from_the_step_in_which_it_is_given() -> None:
 
 
 @cache
-def turned(h: float, method: str, *, alike: bool) -> np.ndarray:
+def turned(h, method, *, alike):
     """Orientation and angular velocity after a second under a spring, or under torques about every axis."""
 
-    def law(t: float, bodies: list[Body]) -> None:
+    def law(t, bodies):
         w, x, y, z = bodies[0].state.orientation
         if alike:
             bodies[0].add_torque([0.0, 0.0, -8.0 * 2.0 * math.atan2(z, w)])
@@ -318,7 +312,7 @@ def turned(h: float, method: str, *, alike: bool) -> np.ndarray:
     [("explicit_euler", 1), ("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)],
 )
 @pytest.mark.parametrize("alike", [True, False], ids=["alike", "differ"])
-def test_a_torque_turns_a_body_with_the_order_of_the_method(method: str, order: int, alike: bool) -> None:
+def test_a_torque_turns_a_body_with_the_order_of_the_method(method, order, alike):
     """About a fixed axis by a spring, whose solution is known; a spinning body by one of a fine step."""
     if alike:
         angle, rate = 0.5 * math.sin(2.0), math.cos(2.0)
@@ -331,10 +325,10 @@ def test_a_torque_turns_a_body_with_the_order_of_the_method(method: str, order: 
 
 
 @pytest.mark.parametrize("method", sorted(STEPPERS))
-def test_the_time_of_a_law_is_a_number_also_after_an_impact(method: str) -> None:
-    asked: list[float] = []
+def test_the_time_of_a_law_is_a_number_also_after_an_impact(method):
+    asked = []
 
-    def wind(t: float, bodies: list[Body]) -> None:
+    def wind(t, bodies):
         asked.append(t)
         bodies[0].add_force([math.sin(t), 0.0, 0.0])
 
@@ -348,8 +342,8 @@ def test_the_time_of_a_law_is_a_number_also_after_an_impact(method: str) -> None
 
 
 @pytest.mark.parametrize("force", [math.nan, math.inf])
-def test_a_law_that_gives_no_number_is_named(force: float) -> None:
-    def broken_drag(t: float, bodies: list[Body]) -> None:
+def test_a_law_that_gives_no_number_is_named(force):
+    def broken_drag(t, bodies):
         bodies[1].add_force([force if t > 0.1 else 0.0, 0.0, 0.0])
 
     bodies = [ball([0, 0, 5]), ball([3, 0, 5])]
@@ -359,7 +353,7 @@ def test_a_law_that_gives_no_number_is_named(force: float) -> None:
 
 
 @pytest.mark.parametrize("masses", [(1.0, 1e3), (1.0, 1e6), (*[1.0] * 9, 100.0)])
-def test_masses_that_the_solver_cannot_carry_are_refused(masses: tuple[float, ...]) -> None:
+def test_masses_that_the_solver_cannot_carry_are_refused(masses):
     """Each would have sunk into what carries it by millimetres up to its whole height."""
     bodies = [Body.sphere(m, 0.5, RigidBodyState.of([0, 0, 0.5 + k])) for k, m in enumerate(masses)]
     with pytest.raises(ValueError, match="the solver cannot carry"):
@@ -367,18 +361,18 @@ def test_masses_that_the_solver_cannot_carry_are_refused(masses: tuple[float, ..
 
 
 @pytest.mark.parametrize("masses", [(1.0, 300.0), (1e6, 1.0), (*[1.0] * 9, 10.0), (1.0,) * 20])
-def test_masses_that_it_can_carry_stand(masses: tuple[float, ...]) -> None:
+def test_masses_that_it_can_carry_stand(masses):
     bodies = [Body.sphere(m, 0.5, RigidBodyState.of([0, 0, 0.5 + k])) for k, m in enumerate(masses)]
     record = Simulator(bodies, h=0.01).run(1.0)
     assert np.abs(record.position - record.position[0]).max() < 2e-4
 
 
-def test_four_runs_at_once_are_four_runs() -> None:
+def test_four_runs_at_once_are_four_runs():
     rng = np.random.default_rng(3)
     places = rng.uniform([-1, -1, 1], [1, 1, 5], (4, 3))
     speeds = rng.normal(size=(4, 3))
 
-    def run(place: np.ndarray, speed: np.ndarray) -> Recording:
+    def run(place, speed):
         bodies = [ball(place, speed), ball([0, 0, 0.5])]
         return Simulator(bodies, h=0.02, surface=Surface(0.6, 0.3)).run(2.0)
 
@@ -390,6 +384,6 @@ def test_four_runs_at_once_are_four_runs() -> None:
         np.testing.assert_allclose(together.ground_time[:, k], alone.ground_time, atol=1e-9)
 
 
-def test_an_engine_without_bodies_is_refused() -> None:
+def test_an_engine_without_bodies_is_refused():
     with pytest.raises(ValueError, match="needs a body"):
         Simulator([], h=0.01)

@@ -1,7 +1,5 @@
 """Right-hand sides: what they answer, and that they survive being sent as a name and numbers."""
 
-from __future__ import annotations
-
 import ast
 import json
 import math

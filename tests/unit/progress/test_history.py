@@ -189,7 +189,7 @@ def test_a_record_that_somebody_changed_has_no_numbers(odd):
 START = datetime(2026, 11, 22, 10, tzinfo=UTC)
 
 
-def run(minute: int, *checks: tuple[str, str, str | None], subject: str = "integrators") -> Event:
+def run(minute, *checks, subject="integrators"):
     """(id, status, diagnosis) of each check of one function."""
     results = [
         failed(id=name, task="step", status=status, diagnosis=diagnosis) for name, status, diagnosis in checks
@@ -221,7 +221,7 @@ def test_a_mistake_has_its_first_and_last_run_and_the_one_that_mended_it():
     ],
     ids=["another failure of its check", "made again", "a check of that name elsewhere", "skipped"],
 )
-def test_what_mends_no_mistake(later: list[Event], found: list[tuple[str, int]]):
+def test_what_mends_no_mistake(later, found):
     mistakes = mistakes_of([run(1, ("order", "fail", "SWAPPED")), *later])
     assert [(one.diagnosis, one.runs) for one in mistakes] == found
     assert {one.mended for one in mistakes} == {None}

@@ -1,7 +1,6 @@
 """Answers from a file: what is accepted, and what is said about what is not."""
 
 import json
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -9,22 +8,21 @@ from hypothesis import strategies as st
 
 from course.errors import UsageError
 from course.quizzing.answers import read_answers
-from course.quizzing.bank import Bank
 
 SEED = 2026  # sums: next, none, total, less; colours: grey, black, white, dark (snow)
 
 
-def written(folder: Path, text: str, name: str = "answers.toml") -> Path:
+def written(folder, text, name="answers.toml"):
     path = folder / name
     path.write_text(text, encoding="utf-8")
     return path
 
 
-def choose(path: Path, bank: Bank, seed: int = SEED) -> dict[str, str]:
+def choose(path, bank, seed=SEED):
     return read_answers(path).choose(bank.pose(seed), bank, seed)
 
 
-def refused(path: Path, bank: Bank, seed: int = SEED) -> UsageError:
+def refused(path, bank, seed=SEED):
     with pytest.raises(UsageError) as caught:
         choose(path, bank, seed)
     assert str(path) in caught.value.message
@@ -33,13 +31,13 @@ def refused(path: Path, bank: Bank, seed: int = SEED) -> UsageError:
 
 
 @pytest.mark.parametrize("answer", ['"total"', '"c"', '"C"', '"3"', "3"])
-def test_an_answer_is_an_id_a_letter_or_a_number(tmp_path: Path, bank: Bank, answer: str) -> None:
+def test_an_answer_is_an_id_a_letter_or_a_number(tmp_path, bank, answer):
     path = written(tmp_path, f'seed = {SEED}\n[answers]\nsums = {answer}\ncolours = "white"\n')
     assert choose(path, bank) == {"sums": "total", "colours": "white"}
     assert read_answers(path).seed == SEED
 
 
-def test_json_of_the_same_shape_will_do(tmp_path: Path, bank: Bank) -> None:
+def test_json_of_the_same_shape_will_do(tmp_path, bank):
     text = json.dumps({"format_version": 1, "seed": SEED, "answers": {"colours": "c", "sums": "total"}})
     assert choose(written(tmp_path, "\ufeff" + text, "a.json"), bank) == {"sums": "total", "colours": "white"}
 
@@ -68,9 +66,7 @@ def test_json_of_the_same_shape_will_do(tmp_path: Path, bank: Bank) -> None:
         ),
     ],
 )
-def test_a_mistake_is_named_with_its_line(
-    tmp_path: Path, bank: Bank, text: str, line: int | None, code: str, said: str
-) -> None:
+def test_a_mistake_is_named_with_its_line(tmp_path, bank, text, line, code, said):
     path = written(tmp_path, text)
     error = refused(path, bank)
     assert said in error.message
@@ -78,11 +74,11 @@ def test_a_mistake_is_named_with_its_line(
     assert error.message.startswith(f"{path}:{line}: " if line else f"{path}: ")
 
 
-def test_a_near_miss_is_recognised(tmp_path: Path, bank: Bank) -> None:
+def test_a_near_miss_is_recognised(tmp_path, bank):
     assert refused(written(tmp_path, '[answers]\nsum = "a"'), bank).help == "Did you mean sums?"
 
 
-def test_a_mistake_in_json_is_named_with_its_line(tmp_path: Path, bank: Bank) -> None:
+def test_a_mistake_in_json_is_named_with_its_line(tmp_path, bank):
     text = '{\n "answers": {\n  "sums": "a",\n  "colours": "e"\n }\n}'
     assert refused(written(tmp_path, text, "a.json"), bank).message.startswith(f"{tmp_path / 'a.json'}:4: ")
     assert ":1: " in refused(written(tmp_path, "[1]", "b.json"), bank).message
@@ -97,13 +93,13 @@ def test_a_mistake_in_json_is_named_with_its_line(tmp_path: Path, bank: Bank) ->
         assert '"answers"' in advice
 
 
-def test_a_question_that_is_not_asked_now_is_named(tmp_path: Path, bank: Bank) -> None:
+def test_a_question_that_is_not_asked_now_is_named(tmp_path, bank):
     path = written(tmp_path, '[answers]\nsums = "a"\ncolours = "a"\n')
     with pytest.raises(UsageError, match=r":3: colours is not asked now"):
         read_answers(path).choose(bank.pose(SEED, only=["sums"]), bank, SEED)
 
 
-def test_a_file_that_cannot_be_read_says_why(tmp_path: Path, bank: Bank) -> None:
+def test_a_file_that_cannot_be_read_says_why(tmp_path, bank):
     assert refused(tmp_path / "none.toml", bank).code == "answers_unreadable"
     assert refused(tmp_path, bank).code == "answers_unreadable"
     (tmp_path / "latin.toml").write_bytes(b"# x\nx = '\xe9'")
@@ -117,7 +113,7 @@ def test_a_file_that_cannot_be_read_says_why(tmp_path: Path, bank: Bank) -> None
     | st.text('{}[]":,=\n ansuwermcolos1_', max_size=80).map(lambda tail: f"seed = 1\n[answers]\n{tail}"),
     suffix=st.sampled_from([".toml", ".json"]),
 )
-def test_no_file_does_more_than_be_refused(tmp_path_factory, text: str, suffix: str) -> None:
+def test_no_file_does_more_than_be_refused(tmp_path_factory, text, suffix):
     path = tmp_path_factory.getbasetemp() / f"answers{suffix}"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
     try:

@@ -4,7 +4,6 @@ import random
 from collections import Counter
 from datetime import datetime, timedelta
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -16,7 +15,7 @@ from course.quizzing.bank import MAX_SEED, Bank, draw, fresh_seed, mark, needed,
 from course.quizzing.desk import GAP_DAYS, ROUNDS, due_after, faults_in, schedule
 
 
-def test_a_seed_means_the_same_questions_for_ever(bank: Bank) -> None:
+def test_a_seed_means_the_same_questions_for_ever(bank):
     """Written down: an attempt of last year is posed again from its seed alone."""
     sums, colours = bank.pose(2026)
     assert draw(2026, "sums", "variant") == 15473829709646471922
@@ -25,12 +24,12 @@ def test_a_seed_means_the_same_questions_for_ever(bank: Bank) -> None:
     assert [choice.id for choice in colours.choices] == ["grey", "black", "white", "dark"]
 
 
-def test_options_are_shuffled_evenly(bank: Bank) -> None:
+def test_options_are_shuffled_evenly(bank):
     places = Counter(bank.pose(seed, only=["colours"])[0].key.letter for seed in range(1000))
     assert all(200 < places[letter] < 300 for letter in "abcd")
 
 
-def test_options_that_round_to_the_same_are_refused_where_they_are_posed(quiz: Path) -> None:
+def test_options_that_round_to_the_same_are_refused_where_they_are_posed(quiz):
     path = quiz / "sums.toml"
     path.write_text(path.read_text().replace('formula = "a + 1"', 'formula = "a + b + 0.001"'))
     bank = Bank(read_questions(quiz))
@@ -48,7 +47,7 @@ def test_options_that_round_to_the_same_are_refused_where_they_are_posed(quiz: P
         ("1 / (a - 30)", "fails for a = 30", '  { name = "next", formula = "1 / (a - 30)" },'),
     ],
 )
-def test_every_case_is_gone_through(quiz: Path, formula: str, said: str, line: str) -> None:
+def test_every_case_is_gone_through(quiz, formula, said, line):
     """Only one case of six clashes, a = 20, b = 3, or fails; sampling might miss it."""
     path = quiz / "sums.toml"
     path.write_text(path.read_text().replace('formula = "a + 1"', f'formula = "{formula}"'))
@@ -76,7 +75,7 @@ def test_every_case_is_gone_through(quiz: Path, formula: str, said: str, line: s
         ("-0.5 m", "−0.50 m"),
     ],
 )
-def test_the_same_answer_in_another_form_is_the_same(one: str, other: str) -> None:
+def test_the_same_answer_in_another_form_is_the_same(one, other):
     assert same_answer(one, other)
     assert same_answer(other, one)
 
@@ -97,7 +96,7 @@ def test_the_same_answer_in_another_form_is_the_same(one: str, other: str) -> No
         ("0.5 m", "0.5 s"),
     ],
 )
-def test_different_answers_are_different(one: str, other: str) -> None:
+def test_different_answers_are_different(one, other):
     assert not same_answer(one, other)
 
 
@@ -115,17 +114,17 @@ def test_different_answers_are_different(one: str, other: str) -> None:
         (1.5e-7, 2, "0.00000015"),
     ],
 )
-def test_a_computed_number_is_shown_with_its_digits(value: float, digits: int, shown: str) -> None:
+def test_a_computed_number_is_shown_with_its_digits(value, digits, shown):
     assert significant(value, digits) == shown
 
 
 @given(st.floats(1e-9, 1e12), st.integers(1, 6))
-def test_a_shown_number_is_as_near_as_its_digits_allow(value: float, digits: int) -> None:
+def test_a_shown_number_is_as_near_as_its_digits_allow(value, digits):
     shown = float(significant(value, digits).replace(",", ""))
     assert abs(shown - value) <= 0.5000001 * 10 ** (1 - digits) * value
 
 
-def test_the_mark_is_the_smallest_number_that_reaches_seventy_per_cent() -> None:
+def test_the_mark_is_the_smallest_number_that_reaches_seventy_per_cent():
     """In floats 0.7 times 10 is exact, and 0.7 times 30 is not: it must still be 21."""
     for total in range(1, 101):
         least = needed(total)
@@ -133,12 +132,12 @@ def test_the_mark_is_the_smallest_number_that_reaches_seventy_per_cent() -> None
         assert 0 < least <= total
 
 
-def test_an_answer_that_is_no_option_is_an_error(bank: Bank) -> None:
+def test_an_answer_that_is_no_option_is_an_error(bank):
     with pytest.raises(KeyError):
         mark(bank.pose(4), {"sums": "z", "colours": "a"})
 
 
-def test_a_first_attempt_asks_the_first_variant_of_each_question(bank: Bank) -> None:
+def test_a_first_attempt_asks_the_first_variant_of_each_question(bank):
     first = {document.value.id: document.value.variant[0].id for document in bank.documents}
     for start in range(50):
         chance = random.Random(start)
@@ -146,7 +145,7 @@ def test_a_first_attempt_asks_the_first_variant_of_each_question(bank: Bank) -> 
         assert {name: bank.variant(name, seed) for name in bank.ids} == first
 
 
-def test_a_question_that_is_new_to_a_student_starts_with_its_first_variant(bank: Bank) -> None:
+def test_a_question_that_is_new_to_a_student_starts_with_its_first_variant(bank):
     chance = random.Random(3)
     seed = fresh_seed(bank, {"sums": 4}, lambda: chance.randrange(MAX_SEED + 1))
     assert bank.variant("sums", seed) != bank.variant("sums", 4)
@@ -155,14 +154,14 @@ def test_a_question_that_is_new_to_a_student_starts_with_its_first_variant(bank:
     )
 
 
-def test_a_retake_asks_everything_otherwise(bank: Bank) -> None:
+def test_a_retake_asks_everything_otherwise(bank):
     for seed in range(100):
         chance = random.Random(seed)
         again = fresh_seed(bank, dict.fromkeys(bank.ids, seed), lambda: chance.randrange(MAX_SEED + 1))  # noqa: B023
         assert all(bank.variant(name, again) != bank.variant(name, seed) for name in bank.ids)
 
 
-def test_a_retake_repeats_as_little_as_it_can(bank: Bank) -> None:
+def test_a_retake_repeats_as_little_as_it_can(bank):
     """Where no seed asks everything otherwise, the one with the fewest repeats is taken."""
     seen = {"sums": 1, "colours": 1}
     few = [seed for seed in range(50) if sum(bank.variant(n, seed) == bank.variant(n, 1) for n in seen) == 1]
@@ -171,14 +170,14 @@ def test_a_retake_repeats_as_little_as_it_can(bank: Bank) -> None:
     assert fresh_seed(bank, seen, lambda: next(draws)) == few[0]
 
 
-def test_a_seed_for_questions_that_went_is_drawn_all_the_same(bank: Bank) -> None:
+def test_a_seed_for_questions_that_went_is_drawn_all_the_same(bank):
     assert fresh_seed(bank, {"gone": 3}, lambda: 77) == 77
 
 
 START = datetime(2026, 3, 2, 12).astimezone()
 
 
-def on(days: float, right: bool) -> tuple[datetime, bool]:
+def on(days, right):
     return START + timedelta(days=days), right
 
 
@@ -195,23 +194,18 @@ def on(days: float, right: bool) -> tuple[datetime, bool]:
     ],
     ids=["missed", "in time", "before its day", "wrong again", "late", "other times of day"],
 )
-def test_what_was_missed_is_due_two_days_after_it_counted_last(
-    answers: list[tuple[datetime, bool]], due: int, rounds: int
-) -> None:
+def test_what_was_missed_is_due_two_days_after_it_counted_last(answers, due, rounds):
     found = due_after("q", answers)
-    assert found is not None
     assert (found.question, found.on, found.rounds) == ("q", START.date() + timedelta(days=due), rounds)
 
 
-def test_the_soonest_comes_first_and_gone_questions_are_passed_over() -> None:
+def test_the_soonest_comes_first_and_gone_questions_are_passed_over():
     outcomes = {"b": [on(1, False)], "a": [on(0, False)], "gone": [on(0, False)], "fine": [on(0, True)]}
     assert [due.question for due in schedule(outcomes, ("b", "a", "fine"))] == ["a", "b"]
 
 
 @given(st.lists(st.tuples(st.floats(0, 40), st.booleans()), max_size=12))
-def test_a_question_is_never_due_sooner_than_the_gap_after_it_was_last_missed(
-    entries: list[tuple[float, bool]],
-) -> None:
+def test_a_question_is_never_due_sooner_than_the_gap_after_it_was_last_missed(entries):
     answers = sorted(on(days, right) for days, right in entries)
     due = due_after("q", answers)
     missed = [at for at, right in answers if not right]

@@ -17,11 +17,11 @@ from course.quizzing.bank import Bank, pose_case
 
 
 @pytest.fixture(scope="module")
-def bank() -> Bank:
+def bank():
     return Bank.of(Catalog())
 
 
-def cases(bank: Bank, question: str, variant: str):
+def cases(bank, question, variant):
     """Each case of a variant: its numbers as they are shown, and the question as it is posed."""
     document = next(document for document in bank.documents if document.value.id == question)
     index = next(i for i, entry in enumerate(document.value.variant) if entry.id == variant)
@@ -29,23 +29,23 @@ def cases(bank: Bank, question: str, variant: str):
         yield pose_case(document, index, case)
 
 
-def numbers(text: str) -> list[float]:
+def numbers(text):
     return [float(found.replace(",", "")) for found in re.findall(r"\d[\d,]*(?:\.\d+)?", text)]
 
 
-def test_the_questions_of_the_chapter_are_among_those_of_the_course(bank: Bank) -> None:
+def test_the_questions_of_the_chapter_are_among_those_of_the_course(bank):
     of_the_chapter = {"why-simulate", "which-engine", "sim-to-real-gap", "digital-twin"}
     assert of_the_chapter | {"numerical-integration"} <= {*bank.ids}
 
 
-def test_the_audit_finds_nothing(bank: Bank) -> None:
+def test_the_audit_finds_nothing(bank):
     catalog = Catalog()
     findings = Findings(catalog.content.root)
     assert audit_quiz(catalog, findings) == bank.ids
     assert findings.sorted() == ()
 
 
-def test_every_variant_is_reached_in_a_thousand_seeds(bank: Bank) -> None:
+def test_every_variant_is_reached_in_a_thousand_seeds(bank):
     for document in bank.documents:
         question = document.value
         reached = Counter(bank.variant(question.id, seed) for seed in range(1000))
@@ -54,7 +54,7 @@ def test_every_variant_is_reached_in_a_thousand_seeds(bank: Bank) -> None:
             assert reached[variant.id] > 0.6 * 1000 / len(question.variant)
 
 
-def test_every_option_is_explained_and_every_wrong_one_has_its_belief(bank: Bank) -> None:
+def test_every_option_is_explained_and_every_wrong_one_has_its_belief(bank):
     for document in bank.documents:
         for index in range(len(document.value.variant)):
             for choice in pose_case(document, index, 0).choices:
@@ -63,7 +63,7 @@ def test_every_option_is_explained_and_every_wrong_one_has_its_belief(bank: Bank
                 assert "{" not in choice.text + choice.explanation
 
 
-def test_the_key_cannot_be_told_by_its_length(bank: Bank) -> None:
+def test_the_key_cannot_be_told_by_its_length(bank):
     """The key is the longest of four, or the shortest, hardly more often than by chance; in a first attempt,
     which asks the first variants, whoever takes the longest gets no more than one of five."""
     ranks = []
@@ -76,7 +76,7 @@ def test_the_key_cannot_be_told_by_its_length(bank: Bank) -> None:
     assert [rows[0] for rows in ranks].count(3) <= 1
 
 
-def test_whoever_picks_ode_reads_the_claim_and_what_its_manual_says(bank: Bank) -> None:
+def test_whoever_picks_ode_reads_the_claim_and_what_its_manual_says(bank):
     (document,) = [document for document in bank.documents if document.value.id == "which-engine"]
     shown = [pose_case(document, index, 0) for index in range(len(document.value.variant))]
     history = [one for one in shown if any(choice.text == "ODE" for choice in one.choices)]
@@ -90,12 +90,12 @@ def test_whoever_picks_ode_reads_the_claim_and_what_its_manual_says(bank: Bank) 
     assert len(shown) - len(history) >= len(history)
 
 
-def test_what_the_questions_on_choosing_say_of_engines_is_in_the_reference() -> None:
+def test_what_the_questions_on_choosing_say_of_engines_is_in_the_reference():
     from course.engines import reference
     from course.engines.registry import ENGINES
 
-    def value(engine: str, scenario: str, setting: str) -> float:
-        found = reference.row(engine, scenario, setting).value  # type: ignore[arg-type]
+    def value(engine, scenario, setting):
+        found = reference.row(engine, scenario, setting).value
         assert found is not None
         return found
 
@@ -116,12 +116,12 @@ def test_what_the_questions_on_choosing_say_of_engines_is_in_the_reference() -> 
 # -- the numbers, against the physics --------------------------------------------------------------------
 
 
-def motion(stepper, system, q: float, h: float, steps: float):
+def motion(stepper, system, q, h, steps):
     """From rest, so many steps."""
     return steppers.trajectory(stepper, system, steppers.State.at_rest([q]), h, round(steps))
 
 
-def test_the_energy_of_the_spring_is_what_explicit_euler_gives(bank: Bank) -> None:
+def test_the_energy_of_the_spring_is_what_explicit_euler_gives(bank):
     for shown in cases(bank, "numerical-integration", "growing-spring"):
         omega, h, t_end = numbers(shown.prompt)
         path = motion(steppers.ExplicitEuler(), Oscillator(omega=omega), 1.0, h, t_end / h)
@@ -132,18 +132,17 @@ def test_the_energy_of_the_spring_is_what_explicit_euler_gives(bank: Bank) -> No
 @pytest.mark.parametrize(
     ("option", "stepper"), [("too-low", steppers.SemiImplicitEuler), ("too-high", steppers.ExplicitEuler)]
 )
-def test_the_bias_of_the_falling_ball_is_what_the_methods_give(bank: Bank, option: str, stepper) -> None:
+def test_the_bias_of_the_falling_ball_is_what_the_methods_give(bank, option, stepper):
     for shown in cases(bank, "numerical-integration", "falling-ball"):
         t_end, h = numbers(shown.prompt)[:2]
         path = motion(stepper(), FreeFall(), 0.0, h, t_end / h)
         off = path.q[-1, 0] + 9.81 * t_end**2 / 2
         choice = shown.choice(option)
-        assert choice is not None
         assert abs(off) == pytest.approx(numbers(choice.text)[0], rel=0.006)
         assert ("low" in choice.text) == (off < 0)
 
 
-def test_the_stiff_contact_blows_up_just_above_the_limit(bank: Bank) -> None:
+def test_the_stiff_contact_blows_up_just_above_the_limit(bank):
     for shown in cases(bank, "numerical-integration", "stiff-contact"):
         k, m = numbers(shown.prompt)[:2]
         limit = numbers(shown.key.text)[0] / 1000
@@ -156,9 +155,9 @@ def test_the_stiff_contact_blows_up_just_above_the_limit(bank: Bank) -> None:
         assert grown[1] > 1e20
 
 
-def test_the_finer_verlet_error_falls_as_the_method_does(bank: Bank) -> None:
+def test_the_finer_verlet_error_falls_as_the_method_does(bank):
     @cache
-    def error(h: float) -> float:
+    def error(h):
         path = motion(steppers.VelocityVerlet(), Oscillator(omega=1.0), 1.0, h, 6.0 / h)
         return float(abs(path.q[-1, 0] - np.cos(6.0)))
 
@@ -168,7 +167,7 @@ def test_the_finer_verlet_error_falls_as_the_method_does(bank: Bank) -> None:
         assert numbers(shown.key.text)[0] == pytest.approx(measured, rel=0.01)
 
 
-def test_the_block_that_is_moved_first_creeps_as_far_as_the_key_says(bank: Bank) -> None:
+def test_the_block_that_is_moved_first_creeps_as_far_as_the_key_says(bank):
     for shown in cases(bank, "numerical-integration", "moved-first"):
         _, _, h, _, t_end = numbers(shown.prompt)[:5]
         x = v = 0.0
@@ -179,7 +178,7 @@ def test_the_block_that_is_moved_first_creeps_as_far_as_the_key_says(bank: Bank)
         assert numbers(shown.key.text)[0] == pytest.approx(1000 * x, rel=0.006)
 
 
-def test_the_correction_costs_the_energy_that_the_key_says_at_two_steps(bank: Bank) -> None:
+def test_the_correction_costs_the_energy_that_the_key_says_at_two_steps(bank):
     for shown in cases(bank, "numerical-integration", "paid-correction"):
         (erp,) = (value for value in numbers(shown.prompt) if 0 < value < 1)
         for h in (0.01, 0.002):
@@ -192,21 +191,21 @@ def test_the_correction_costs_the_energy_that_the_key_says_at_two_steps(bank: Ba
             assert numbers(shown.key.text)[0] / 100 == pytest.approx(np.mean(kept) - 1, rel=0.08)
 
 
-def test_the_sliding_box_stops_where_friction_says(bank: Bank) -> None:
+def test_the_sliding_box_stops_where_friction_says(bank):
     for shown in cases(bank, "sim-to-real-gap", "sliding-box"):
         v, mu_sim, d_sim, d_real = numbers(shown.prompt)[:4]
         assert d_sim == pytest.approx(v**2 / (2 * mu_sim * 9.81), rel=0.006)
         assert numbers(shown.key.text)[0] == pytest.approx(v**2 / (2 * d_real * 9.81), rel=0.006)
 
 
-def test_the_twin_falls_behind_by_what_it_has_not_computed(bank: Bank) -> None:
+def test_the_twin_falls_behind_by_what_it_has_not_computed(bank):
     for shown in cases(bank, "digital-twin", "falling-behind"):
         factor, _, minutes = numbers(shown.prompt)
         simulated = round(minutes * 60_000) * 0.001 * factor
         assert numbers(shown.key.text)[0] == pytest.approx(minutes * 60 - simulated, abs=1e-3)
 
 
-def test_training_time_is_steps_over_copies_and_speed(bank: Bank) -> None:
+def test_training_time_is_steps_over_copies_and_speed(bank):
     for shown in cases(bank, "why-simulate", "training-time"):
         millions, step, copies, speed = numbers(shown.prompt)
         days, hours = numbers(shown.key.text)

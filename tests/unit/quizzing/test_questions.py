@@ -1,14 +1,12 @@
 """Reading question files: every mistake is a sentence with file, line and fix."""
 
-from pathlib import Path
-
 import pytest
 
 from course.catalog.questions import read_questions
 from course.errors import ContentError
 
 
-def broken(quiz: Path, old: str, new: str, name: str = "sums.toml") -> ContentError:
+def broken(quiz, old, new, name="sums.toml"):
     """The error after the first ``old`` in a file was replaced; it must be about this file."""
     path = quiz / name
     text = path.read_text(encoding="utf-8")
@@ -21,7 +19,7 @@ def broken(quiz: Path, old: str, new: str, name: str = "sums.toml") -> ContentEr
     return caught.value
 
 
-def line_of(quiz: Path, text: str, name: str = "sums.toml") -> int:
+def line_of(quiz, text, name="sums.toml"):
     return (quiz / name).read_text(encoding="utf-8").split("\n").index(text) + 1
 
 
@@ -64,16 +62,16 @@ def line_of(quiz: Path, text: str, name: str = "sums.toml") -> int:
         ("values = [3.0, 4.5]", f"values = {[*range(200)]}", "600 cases"),
     ],
 )
-def test_a_mistake_is_named(quiz: Path, old: str, new: str, problem: str) -> None:
+def test_a_mistake_is_named(quiz, old, new, problem):
     assert problem in broken(quiz, old, new).message
 
 
-def test_a_mistake_is_pointed_at(quiz: Path) -> None:
+def test_a_mistake_is_pointed_at(quiz):
     where = line_of(quiz, '  { name = "next", formula = "a + 1" },')
     assert broken(quiz, 'formula = "a + 1"', 'formula = "a + z"').line == where
 
 
-def test_a_missing_option_is_counted(quiz: Path) -> None:
+def test_a_missing_option_is_counted(quiz):
     old = '  { id = "dark", text = "Dark", misconception = "by-night", explanation = "By night only." },\n'
     error = broken(quiz, old, "", "colours.toml")
     assert "variant grass has 3 options" in error.message

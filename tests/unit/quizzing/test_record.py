@@ -1,8 +1,5 @@
 """Attempts on their way: from the record of progress into a submission, and scored again there."""
 
-from pathlib import Path
-from typing import Any
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -18,7 +15,7 @@ from course.quizzing.desk import answered, begun, finished, reviewed
 from course.scoring.verdict import Status
 
 
-def attempt(bank: Bank, seed: int, wrong: int = 0) -> dict[str, Any]:
+def attempt(bank, seed, wrong=0):
     """An honest record with so many wrong answers, as JSON gives it back."""
     answers = {}
     for number, posed in enumerate(bank.pose(seed)):
@@ -35,11 +32,11 @@ def attempt(bank: Bank, seed: int, wrong: int = 0) -> dict[str, Any]:
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Store:
+def store(tmp_path):
     return Store(tmp_path / "p.sqlite")
 
 
-def take(store: Store, bank: Bank, seed: int, wrong: int = 0, *, finish: bool = True) -> progress.Attempt:
+def take(store, bank, seed, wrong=0, *, finish=True):
     """What ``course quiz take`` records."""
     taken = begun(bank, seed, "1.0.0", store.append)
     for question, option in attempt(bank, seed, wrong)["answers"].items():
@@ -49,23 +46,22 @@ def take(store: Store, bank: Bank, seed: int, wrong: int = 0, *, finish: bool = 
     return taken
 
 
-def history(store: Store) -> progress.QuizHistory:
+def history(store):
     return progress.quiz_history(store.events())
 
 
 # -- the record of progress ------------------------------------------------------------------------------
 
 
-def test_the_newest_attempt_goes_on_until_it_is_finished(store: Store, bank: Bank) -> None:
+def test_the_newest_attempt_goes_on_until_it_is_finished(store, bank):
     take(store, bank, 5, finish=False)
     newest = take(store, bank, 6, finish=False)
     left = history(store).open
-    assert left is not None
     assert left.id == newest.id
     assert progress.records(history(store)) == []
 
 
-def test_the_first_answer_counts_and_nothing_after_the_end(store: Store, bank: Bank) -> None:
+def test_the_first_answer_counts_and_nothing_after_the_end(store, bank):
     """Two terminals may go on with the same attempt."""
     one = take(store, bank, 5, finish=False)
     answered(one, "sums", "none", store.append)
@@ -79,21 +75,18 @@ def test_the_first_answer_counts_and_nothing_after_the_end(store: Store, bank: B
     assert history(store) == before
 
 
-def test_of_one_seed_the_first_attempt_counts_and_of_those_the_best(store: Store, bank: Bank) -> None:
+def test_of_one_seed_the_first_attempt_counts_and_of_those_the_best(store, bank):
     first = take(store, bank, 5, wrong=1)
     take(store, bank, 5)
     assert [told.id for told in history(store).counting] == [first.id]
     take(store, bank, 6)
     take(store, bank, 7, wrong=2)
     best = history(store).best
-    assert best is not None
     assert (best.seed, best.score, best.total) == (6, 2, 2)
     assert [record["seed"] for record in progress.records(history(store))] == [5, 6, 7]
 
 
-def test_of_too_many_attempts_the_best_travel(
-    bank: Bank, store: Store, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_of_too_many_attempts_the_best_travel(bank, store, monkeypatch):
     monkeypatch.setattr(progress, "MAX_RECORDS", 8)
     for seed in range(progress.MAX_RECORDS + 2):
         take(store, bank, seed, wrong=0 if seed == 0 else 2 if seed in {1, 2} else 1)
@@ -102,7 +95,7 @@ def test_of_too_many_attempts_the_best_travel(
     assert score_record(bank, kept) is not None
 
 
-def test_outcomes_are_joined_from_attempts_and_reviews(store: Store, bank: Bank) -> None:
+def test_outcomes_are_joined_from_attempts_and_reviews(store, bank):
     take(store, bank, 5, wrong=1)
     (posed,) = bank.pose(9, only=["sums"])
     reviewed(posed, posed.key.id, 9, store.append)
@@ -115,14 +108,13 @@ def test_outcomes_are_joined_from_attempts_and_reviews(store: Store, bank: Bank)
 # -- scored again ----------------------------------------------------------------------------------------
 
 
-def test_no_attempt_is_no_result(bank: Bank) -> None:
+def test_no_attempt_is_no_result(bank):
     assert score_record(bank, []) is None
     assert grade_quiz(bank, []) is None
 
 
-def test_a_verdict_has_a_check_for_each_question(bank: Bank) -> None:
+def test_a_verdict_has_a_check_for_each_question(bank):
     verdict = grade_quiz(bank, [attempt(bank, 5, wrong=1)])
-    assert verdict is not None
     assert (verdict.exercise, verdict.state, verdict.score, verdict.max_score) == ("quiz", "graded", 1.0, 2.0)
     assert (verdict.passed, verdict.isolation, verdict.warnings) == (False, "", ())
     wrong, right = verdict.checks
@@ -131,14 +123,13 @@ def test_a_verdict_has_a_check_for_each_question(bank: Bank) -> None:
     assert (right.id, right.status, right.points, right.diagnosis) == ("colours", Status.PASS, 1.0, None)
 
 
-def test_the_best_attempt_counts_and_a_seed_counts_once(bank: Bank) -> None:
+def test_the_best_attempt_counts_and_a_seed_counts_once(bank):
     verdict = grade_quiz(bank, [attempt(bank, 5, wrong=2), attempt(bank, 5), attempt(bank, 6, wrong=1)])
-    assert verdict is not None
     assert verdict.score == 1.0
     assert verdict.warnings == ("Best of 3 attempts, 1 of them with questions already seen.",)
 
 
-def change(record: dict[str, Any], **changes: Any) -> list[dict[str, Any]]:
+def change(record, **changes):
     return [{**record, **changes}]
 
 
@@ -185,14 +176,12 @@ def change(record: dict[str, Any], **changes: Any) -> list[dict[str, Any]]:
         (lambda r: {"a": r}, "malformed"),
     ],
 )
-def test_a_record_that_does_not_hold_together_is_ungradable(bank: Bank, spoil: Any, said: str) -> None:
+def test_a_record_that_does_not_hold_together_is_ungradable(bank, spoil, said):
     record = spoil(attempt(bank, 5, wrong=1))
     with pytest.raises(UngradableError) as caught:
         score_record(bank, record)
     assert said in caught.value.message
     verdict = grade_quiz(bank, record)
-    assert verdict is not None
-    assert verdict.error is not None
     assert verdict.error.code == "quiz_record_inconsistent"
     assert (verdict.state, verdict.score, verdict.max_score, verdict.checks) == ("ungradable", 0.0, 2.0, ())
     assert not verdict.passed
@@ -201,13 +190,13 @@ def test_a_record_that_does_not_hold_together_is_ungradable(bank: Bank, spoil: A
     assert verdict.error.message.isascii()
 
 
-def test_one_bad_attempt_among_good_ones_spoils_the_record(bank: Bank) -> None:
+def test_one_bad_attempt_among_good_ones_spoils_the_record(bank):
     good, bad = attempt(bank, 5), {**attempt(bank, 6, wrong=1), "score": 2}
     with pytest.raises(UngradableError, match="Attempt 2 of the quiz claims 2"):
         score_record(bank, [good, bad])
 
 
-def test_the_help_names_the_version_of_the_attempt(bank: Bank) -> None:
+def test_the_help_names_the_version_of_the_attempt(bank):
     with pytest.raises(UngradableError) as caught:
         score_record(bank, change(attempt(bank, 5), score=1, version="0.9\x1b[31m"))
     assert "version '0.9\\x1b[31m' of the course" in caught.value.help
@@ -221,7 +210,7 @@ JSON = st.recursive(
 
 
 @given(data=st.data())
-def test_whatever_a_record_is_it_is_scored_or_refused(data: st.DataObject) -> None:
+def test_whatever_a_record_is_it_is_scored_or_refused(data):
     record = data.draw(JSON)
     assert len(record_sha256(record)) == 64
     if record == []:
@@ -231,33 +220,32 @@ def test_whatever_a_record_is_it_is_scored_or_refused(data: st.DataObject) -> No
 
 
 @given(data=st.data())
-def test_an_honest_record_with_anything_in_one_place_is_scored_or_refused(bank: Bank, data) -> None:
+def test_an_honest_record_with_anything_in_one_place_is_scored_or_refused(bank, data):
     record = attempt(bank, data.draw(st.integers(0, MAX_SEED)), data.draw(st.integers(0, 2)))
     key = data.draw(st.sampled_from(sorted(record)))
     record[key] = data.draw(JSON)
     verdict = grade_quiz(bank, [record])
-    assert verdict is not None
     if verdict.error is None:
         assert verdict.score == record["score"]
     else:
         assert verdict.error.code == "quiz_record_inconsistent"
 
 
-def test_a_digest_depends_on_the_answers_and_not_on_their_order(bank: Bank) -> None:
+def test_a_digest_depends_on_the_answers_and_not_on_their_order(bank):
     record = attempt(bank, 5)
     turned = dict(reversed(list(record.items())))
     assert record_sha256([record]) == record_sha256([turned])
     assert record_sha256([record]) != record_sha256(change(record, score=1))
 
 
-def test_another_question_file_is_another_grader(quiz: Path, bank: Bank) -> None:
+def test_another_question_file_is_another_grader(quiz, bank):
     path = quiz / "sums.toml"
     assert quiz_version(Bank(read_questions(quiz))) == quiz_version(bank)
     path.write_text(path.read_text() + "\n# changed\n")
     assert quiz_version(Bank(read_questions(quiz))) != quiz_version(bank)
 
 
-def test_a_fault_of_the_questions_is_no_fault_of_the_student(quiz: Path) -> None:
+def test_a_fault_of_the_questions_is_no_fault_of_the_student(quiz):
     path = quiz / "sums.toml"
     path.write_text(path.read_text().replace('formula = "a + 1"', 'formula = "a + b"'))
     bank = Bank(read_questions(quiz))
@@ -271,7 +259,6 @@ def test_a_fault_of_the_questions_is_no_fault_of_the_student(quiz: Path) -> None
         "score": 2,
     }
     verdict = grade_quiz(bank, [record])
-    assert verdict is not None
     assert verdict.state == "grader_error"
 
 
@@ -281,25 +268,25 @@ def test_a_fault_of_the_questions_is_no_fault_of_the_student(quiz: Path) -> None
 class _Catalog:
     """As much of a course as the audit of the quiz looks at."""
 
-    def __init__(self, quiz: Path) -> None:
+    def __init__(self, quiz):
         from course.catalog.locate import Content
 
         root = quiz.parent
         self.content = Content(root=root, exercises=root / "exercises", lessons=root, quiz=quiz)
 
-    def lesson_ids(self) -> tuple[str, ...]:
+    def lesson_ids(self):
         return ("adding",)
 
 
-def audited(quiz: Path) -> list[str]:
+def audited(quiz):
     from course.authoring.report import Findings
 
     findings = Findings(quiz.parent)
-    audit_quiz(_Catalog(quiz), findings)  # type: ignore[arg-type]
+    audit_quiz(_Catalog(quiz), findings)
     return [f"{problem.where} {problem.message}" for problem in findings.sorted()]
 
 
-def test_the_audit_wants_four_variants(quiz: Path) -> None:
+def test_the_audit_wants_four_variants(quiz):
     assert audited(quiz) == [
         "quiz/colours.toml:1 question colours has 2 variants, and needs 4.",
         "quiz/sums.toml:1 question sums has 2 variants, and needs 4.",
@@ -321,12 +308,12 @@ def test_the_audit_wants_four_variants(quiz: Path) -> None:
         ('title = "Sums"', "", "lacks the key `title`"),
     ],
 )
-def test_the_audit_finds(quiz: Path, old: str, new: str, said: str) -> None:
+def test_the_audit_finds(quiz, old, new, said):
     path = quiz / "sums.toml"
     path.write_text(path.read_text().replace(old, new))
     assert any(said in problem and problem.startswith("quiz/sums.toml") for problem in audited(quiz))
 
 
-def test_the_audit_keeps_the_name_of_the_quiz_free(quiz: Path) -> None:
+def test_the_audit_keeps_the_name_of_the_quiz_free(quiz):
     (quiz.parent / "exercises" / "quiz").mkdir(parents=True)
     assert any("an exercise is called quiz" in problem for problem in audited(quiz))

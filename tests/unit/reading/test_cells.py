@@ -12,7 +12,7 @@ from course.reading.cells import STOPPED, CellRunner, textbook_for
 from course.reading.parts import Cell, read_script
 
 
-def cell(order: int, source: str, *, hidden: bool = False) -> Cell:
+def cell(order, source, *, hidden=False):
     return Cell(0 if hidden else order + 1, order, order, f"key{order}", source, None)
 
 

@@ -61,7 +61,7 @@ print(x)
 
 
 @pytest.fixture
-def lesson(tmp_path: Path) -> Lesson:
+def lesson(tmp_path):
     path = tmp_path / "a-lesson.md"
     path.write_text(TEXT, encoding="utf-8")
     return Lesson(1, "a-lesson", "A lesson", 10, "What it is.", ("do this",), (), (), str(path))
@@ -218,7 +218,7 @@ def test_minutes_left_fall_from_all_to_none(lesson):
 # -- screens -------------------------------------------------------------------------------------------
 
 
-def rows_of(*lengths: int, whole: bool = False) -> list[Row]:
+def rows_of(*lengths, whole=False):
     return [Row(b, blank=False, joined=whole and r > 0) for b, n in enumerate(lengths) for r in range(n)]
 
 
@@ -275,7 +275,7 @@ def test_a_place_in_a_block_that_is_not_shown_is_the_block_before():
 AT = datetime(2026, 11, 22, 10, tzinfo=UTC)
 
 
-def events(*given: tuple[str, dict[str, object]]) -> list[Event]:
+def events(*given):
     return [Event(number, AT, "prediction", lesson, data) for number, (lesson, data) in enumerate(given, 1)]
 
 

@@ -1,16 +1,13 @@
 """An SDF world run in DART, the engine of Gazebo Sim, built joint by joint; Gazebo itself is not here."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from xml.etree import ElementTree as ET
 
 import dartpy as dart
 import numpy as np
 
 
-def ends(world_file: bytes, seconds: float) -> dict[str, np.ndarray]:
+def ends(world_file, seconds):
     """Where each moving link is after a time, (x, y, z) in m."""
     described = ET.fromstring(world_file).find("world")
     world = dart.simulation.World()
@@ -19,7 +16,7 @@ def ends(world_file: bytes, seconds: float) -> dict[str, np.ndarray]:
     awake = world.getDeactivationOptions()
     awake.mEnabled = False
     world.setDeactivationOptions(awake)
-    links: dict[str, object] = {}
+    links = {}
     for model in described.iterfind("model"):
         world.addSkeleton(standing(model) if model.findtext("static") == "true" else jointed(model, links))
     for _ in range(round(seconds / world.getTimeStep())):
@@ -27,7 +24,7 @@ def ends(world_file: bytes, seconds: float) -> dict[str, np.ndarray]:
     return {name: link.getWorldTransform().translation() for name, link in links.items()}
 
 
-def standing(model: ET.Element):
+def standing(model):
     skeleton = dart.dynamics.Skeleton(model.get("name"))
     for link in model.iterfind("link"):
         joint, body = skeleton.createWeldJointAndBodyNodePair()
@@ -36,7 +33,7 @@ def standing(model: ET.Element):
     return skeleton
 
 
-def jointed(model: ET.Element, links: dict[str, object]):
+def jointed(model, links):
     """A tree of joints, each with its axis turned from the model's frame into its own, and its velocity."""
     skeleton = dart.dynamics.Skeleton(model.get("name"))
     described = {link.get("name"): link for link in model.iterfind("link")}
@@ -44,14 +41,14 @@ def jointed(model: ET.Element, links: dict[str, object]):
     moving = (
         {} if plugin is None else {n: float(plugin.findtext(n)) for n in plugin.findtext("joints").split()}
     )
-    made: dict[str, object] = {}
+    made = {}
     waiting = model.findall("joint")
     while waiting:
         joint = next(j for j in waiting if j.findtext("parent") in {"world", *made})
         waiting.remove(joint)
         parent, child = joint.findtext("parent"), described[joint.findtext("child")]
         kind = {"prismatic": "Prismatic", "revolute": "Revolute"}[joint.get("type")]
-        make: Callable = getattr(skeleton, f"create{kind}JointAndBodyNodePair")
+        make = getattr(skeleton, f"create{kind}JointAndBodyNodePair")
         held, body = make() if parent == "world" else make(made[parent])
         before = dart.math.Isometry3() if parent == "world" else placed(described[parent])
         at = placed(child).multiply(placed(joint))
@@ -69,7 +66,7 @@ def jointed(model: ET.Element, links: dict[str, object]):
     return skeleton
 
 
-def shape(link: ET.Element, body) -> None:
+def shape(link, body):
     for collision in link.iterfind("collision"):
         form = collision.find("geometry")[0]
         if form.tag == "sphere":
@@ -87,7 +84,7 @@ def shape(link: ET.Element, body) -> None:
         surface.setRestitutionCoeff(float(collision.findtext("surface/bounce/restitution_coefficient")))
 
 
-def placed(element: ET.Element):
+def placed(element):
     """The pose of an element: turns about x, then y, then z, as SDF has it; only pitch and roll occur."""
     x, y, z, roll, pitch, yaw = numbers(element.findtext("pose") or "0 0 0 0 0 0")
     assert yaw == 0.0
@@ -98,5 +95,5 @@ def placed(element: ET.Element):
     return found
 
 
-def numbers(text: str) -> np.ndarray:
+def numbers(text):
     return np.array([float(word) for word in text.split()])

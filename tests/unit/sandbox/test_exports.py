@@ -1,7 +1,5 @@
 """Exported worlds are what other engines read."""
 
-from __future__ import annotations
-
 import math
 import sys
 import types
@@ -14,7 +12,7 @@ from msgspec.structs import replace
 
 from course.errors import UsageError
 from course.sandbox.exports.formats import VERSION, damping_ratio, mjcf, sdf, start_script
-from course.sandbox.scene.loading import Chosen, choose, scene_ids
+from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.scene.model import Body, Joint, layout
 from course.sandbox.world.world import World
 
@@ -22,7 +20,7 @@ EXPORTED = sorted(set(scene_ids()) - {"galton-board", "robot-boxes"})
 
 
 @pytest.mark.parametrize("name", EXPORTED)
-def test_an_sdf_world_has_light_and_every_body_with_its_mass_place_surface_and_one_joint(name: str) -> None:
+def test_an_sdf_world_has_light_and_every_body_with_its_mass_place_surface_and_one_joint(name):
     chosen = choose(name)
     root = ET.fromstring(sdf(chosen))
     assert root.tag == "sdf"
@@ -53,7 +51,7 @@ def test_an_sdf_world_has_light_and_every_body_with_its_mass_place_surface_and_o
             assert joint.findtext("axis/xyz") in ways[joint.get("type")]
 
 
-def test_velocities_at_the_start_are_told_to_a_system_of_gazebo_that_lies_beside_the_world() -> None:
+def test_velocities_at_the_start_are_told_to_a_system_of_gazebo_that_lies_beside_the_world():
     world = sdf(choose("head-on"))
     plugins = {m.get("name"): m.find("plugin") for m in ET.fromstring(world).iterfind("world/model")}
     for name, speed in (("left-puck", "2"), ("right-puck", "-1")):
@@ -64,9 +62,7 @@ def test_velocities_at_the_start_are_told_to_a_system_of_gazebo_that_lies_beside
     assert start_script(sdf(choose("free-fall"))) is None
 
 
-def test_the_system_sets_each_velocity_when_it_is_configured_and_again_when_the_world_is_reset(
-    monkeypatch,
-) -> None:
+def test_the_system_sets_each_velocity_when_it_is_configured_and_again_when_the_world_is_reset(monkeypatch):
     """With stand-ins for Gazebo's bindings, named as its documentation names them."""
     done = []
 
@@ -105,7 +101,7 @@ def test_the_system_sets_each_velocity_when_it_is_configured_and_again_when_the_
     assert len(done) == 4
 
 
-def chained(*more: Joint) -> Chosen:
+def chained(*more):
     """A body on a rod, and another one held to it by a pivot."""
     steel = {"shape": "circle", "material": "puck", "mass": 1.0, "radius": 0.05, "velocity": (0.3, 0.4)}
     bodies = (
@@ -121,7 +117,7 @@ def chained(*more: Joint) -> Chosen:
     return replace(chosen, scene=replace(chosen.scene, body=bodies, joint=(*joints, *more)))
 
 
-def test_bodies_in_a_chain_are_links_of_one_model_whose_joints_move_as_the_bodies_do() -> None:
+def test_bodies_in_a_chain_are_links_of_one_model_whose_joints_move_as_the_bodies_do():
     model = ET.fromstring(sdf(chained())).find("world/model[@name='upper']")
     joints = {joint.get("name"): joint for joint in model.iterfind("joint")}
     assert [(j.findtext("parent"), j.findtext("child")) for j in joints.values()] == [
@@ -135,14 +131,14 @@ def test_bodies_in_a_chain_are_links_of_one_model_whose_joints_move_as_the_bodie
     assert float(plugin.findtext("rod-hook-upper-end")) == pytest.approx(-1.0)
 
 
-def test_a_closed_chain_is_refused_with_the_reason() -> None:
+def test_a_closed_chain_is_refused_with_the_reason():
     closed = chained(Joint(kind="rod", a="hook", b="lower"))
     with pytest.raises(UsageError, match="closes a chain"):
         sdf(closed)
     assert mjcf(closed)
 
 
-def test_gravity_and_settings_reach_the_exports() -> None:
+def test_gravity_and_settings_reach_the_exports():
     chosen = choose("free-fall", {"gravity": 1.62, "step": 0.002})
     assert ET.fromstring(sdf(chosen)).findtext("world/gravity") == "0 0 -1.62"
     option = ET.fromstring(mjcf(chosen)).find("option")
@@ -150,7 +146,7 @@ def test_gravity_and_settings_reach_the_exports() -> None:
 
 
 @pytest.mark.parametrize("name", EXPORTED)
-def test_mjcf_writes_out_the_product_of_each_pair(name: str) -> None:
+def test_mjcf_writes_out_the_product_of_each_pair(name):
     chosen = choose(name)
     root = ET.fromstring(mjcf(chosen))
     parts = {part.name: part for part in layout(chosen.scene)}
@@ -165,7 +161,7 @@ def test_mjcf_writes_out_the_product_of_each_pair(name: str) -> None:
         assert zeta == pytest.approx(damping_ratio(a.restitution * b.restitution), abs=1e-9)
 
 
-def test_half_a_period_of_the_contact_spring_leaves_the_restitution() -> None:
+def test_half_a_period_of_the_contact_spring_leaves_the_restitution():
     for e in (0.05, 0.5, 0.9, 1.0):
         zeta = damping_ratio(e)
         assert math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2)) == pytest.approx(e)
@@ -174,12 +170,12 @@ def test_half_a_period_of_the_contact_spring_leaves_the_restitution() -> None:
 
 @pytest.mark.parametrize("name", ["galton-board", "robot-boxes"])
 @pytest.mark.parametrize("write", [sdf, mjcf])
-def test_what_a_file_cannot_say_is_refused(name: str, write) -> None:
+def test_what_a_file_cannot_say_is_refused(name, write):
     with pytest.raises(UsageError, match="how a world begins"):
         write(choose(name))
 
 
-def in_mujoco(chosen: Chosen):
+def in_mujoco(chosen):
     """MuJoCo, and the exported world in it: the model, and its data at the start."""
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(mjcf(chosen).decode())
@@ -189,7 +185,7 @@ def in_mujoco(chosen: Chosen):
 
 
 @pytest.mark.parametrize("name", EXPORTED)
-def test_mujoco_loads_every_export_and_steps_it(name: str) -> None:
+def test_mujoco_loads_every_export_and_steps_it(name):
     mujoco, model, data = in_mujoco(choose(name))
     for _ in range(50):
         mujoco.mj_step(model, data)
@@ -200,7 +196,7 @@ def test_mujoco_loads_every_export_and_steps_it(name: str) -> None:
     ("name", "settings", "within"),
     [("head-on", {}, 0.02), ("unequal-masses", {}, 0.02), ("head-on", {"restitution": 0.7}, 0.05)],
 )
-def test_mujoco_and_this_engine_agree_on_a_collision_of_two(name, settings, within: float) -> None:
+def test_mujoco_and_this_engine_agree_on_a_collision_of_two(name, settings, within):
     chosen = choose(name, settings)
     mujoco, model, data = in_mujoco(chosen)
     while data.time < chosen.scene.duration:
@@ -212,7 +208,7 @@ def test_mujoco_and_this_engine_agree_on_a_collision_of_two(name, settings, with
         assert theirs == pytest.approx(row[3], abs=within * 3)
 
 
-def told(column: int) -> dict[str, float]:
+def told(column):
     """A column of the table of end errors in docs/sandbox.md, mm."""
     text = (Path(__file__).resolve().parents[3] / "docs" / "sandbox.md").read_text(encoding="utf-8")
     rows = [line.strip("| \n").split("|") for line in text.splitlines() if line.startswith("| `")]
@@ -232,7 +228,7 @@ QUICK = ("bullet-wall", "free-fall", "head-on", "incline", "pendulum-wall", "une
         pytest.param("dartpy", sorted(set(EXPORTED) - set(QUICK)), marks=pytest.mark.soak),
     ],
 )
-def test_the_end_errors_in_the_docs_are_those_of_the_exported_worlds(engine: str, names: list[str]) -> None:
+def test_the_end_errors_in_the_docs_are_those_of_the_exported_worlds(engine, names):
     pytest.importorskip(engine)
     for name, error_mm in told(2 if engine == "mujoco" else 3).items():
         if name not in names or name == "billiards-break":

@@ -1,7 +1,5 @@
 """Films and pictures are what they say they are."""
 
-from __future__ import annotations
-
 import io
 import math
 
@@ -16,7 +14,7 @@ from course.sandbox.views.stage import Stage
 from course.sandbox.world.world import World
 
 
-def filmed(name: str, frames: int) -> tuple[Film, World]:
+def filmed(name, frames):
     world = World(choose(name).scene)
     film = Film(world.scene, width=200)
     for _ in range(frames):
@@ -25,7 +23,7 @@ def filmed(name: str, frames: int) -> tuple[Film, World]:
     return film, world
 
 
-def test_a_gif_has_every_frame_at_its_time_and_moves() -> None:
+def test_a_gif_has_every_frame_at_its_time_and_moves():
     film, _ = filmed("head-on", 12)
     picture = Image.open(io.BytesIO(film.gif(fps=25)))
     assert picture.n_frames == 12
@@ -36,7 +34,7 @@ def test_a_gif_has_every_frame_at_its_time_and_moves() -> None:
     assert picture.convert("RGB").tobytes() != first
 
 
-def test_bodies_are_where_the_scene_has_them_in_their_own_colour() -> None:
+def test_bodies_are_where_the_scene_has_them_in_their_own_colour():
     film, world = filmed("head-on", 1)
     image = film.draw(world.parts, World(world.scene).snapshot())
     left, bottom, right, top = world.scene.view
@@ -47,13 +45,13 @@ def test_bodies_are_where_the_scene_has_them_in_their_own_colour() -> None:
 
 
 @pytest.mark.parametrize("name", ["newtons-cradle", "galton-board", "robot-boxes"])
-def test_every_shape_joint_and_wheel_can_be_drawn(name: str) -> None:
+def test_every_shape_joint_and_wheel_can_be_drawn(name):
     film, world = filmed(name, 1)
     image = Image.open(io.BytesIO(film.png(world.parts, world.snapshot())))
     assert len(image.getcolors(100_000)) > 10
 
 
-def test_without_ffmpeg_an_mp4_says_what_to_do(monkeypatch) -> None:
+def test_without_ffmpeg_an_mp4_says_what_to_do(monkeypatch):
     film, _ = filmed("head-on", 1)
     monkeypatch.setattr(films.shutil, "which", lambda name: None)
     with pytest.raises(MissingCapabilityError) as caught:
@@ -61,7 +59,7 @@ def test_without_ffmpeg_an_mp4_says_what_to_do(monkeypatch) -> None:
     assert "GIF" in caught.value.help
 
 
-def test_ffmpeg_gets_every_frame_and_its_failure_is_told_in_words(monkeypatch, tmp_path) -> None:
+def test_ffmpeg_gets_every_frame_and_its_failure_is_told_in_words(monkeypatch, tmp_path):
     film, _ = filmed("head-on", 3)
     fake = tmp_path / "ffmpeg"
     fake.write_text('#!/bin/sh\nfor last; do :; done\ncat > "$last"\n')
@@ -73,7 +71,7 @@ def test_ffmpeg_gets_every_frame_and_its_failure_is_told_in_words(monkeypatch, t
         film.mp4()
 
 
-def test_of_a_long_run_the_last_part_is_filmed_and_its_name_says_so(monkeypatch) -> None:
+def test_of_a_long_run_the_last_part_is_filmed_and_its_name_says_so(monkeypatch):
     stage = Stage(choose("head-on"))
     while stage.world.t < 4.0:
         stage.tick(1 / 60, budget=60.0)
@@ -84,14 +82,14 @@ def test_of_a_long_run_the_last_part_is_filmed_and_its_name_says_so(monkeypatch)
     assert Image.open(io.BytesIO(film.data)).n_frames == 25
 
 
-def test_large_frames_are_kept_packed() -> None:
+def test_large_frames_are_kept_packed():
     film, world = Film(choose("head-on").scene, width=1920), World(choose("head-on").scene)
     for _ in range(3):
         film.take(world.parts, world.snapshot())
     assert sum(map(len, film._frames)) < 0.05 * 3 * film.size[0] * film.size[1]
 
 
-def test_a_film_without_frames_or_too_long_is_refused(monkeypatch) -> None:
+def test_a_film_without_frames_or_too_long_is_refused(monkeypatch):
     film = Film(choose("head-on").scene)
     with pytest.raises(UsageError):
         film.gif()

@@ -1,7 +1,5 @@
 """What scenes teach is true of what they do."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -12,14 +10,14 @@ from course.sandbox.scene.loading import choose
 from course.sandbox.world.world import World
 
 
-def speeds(world: World) -> dict[str, float]:
+def speeds(world):
     return {
         part.name: float(math.hypot(row[3], row[4]))
         for part, row in zip(world.parts, world.state(), strict=True)
     }
 
 
-def test_in_newtons_cradle_the_last_ball_takes_it_all() -> None:
+def test_in_newtons_cradle_the_last_ball_takes_it_all():
     world = World(choose("newtons-cradle").scene)
     world.run_until(0.56)  # a quarter period and a little
     now = speeds(world)
@@ -32,10 +30,10 @@ def test_in_newtons_cradle_the_last_ball_takes_it_all() -> None:
 
 
 @pytest.mark.parametrize("friction", [0.2, 0.8, 1.4])
-def test_a_block_slips_at_the_angle_whose_tangent_is_the_product_of_frictions(friction: float) -> None:
+def test_a_block_slips_at_the_angle_whose_tangent_is_the_product_of_frictions(friction):
     slip = math.degrees(math.atan(friction * 0.5))
 
-    def slides(angle: float) -> bool:
+    def slides(angle):
         chosen = choose("incline", {"angle": angle, "friction": friction})
         world = World(chosen.scene, chosen.settings)
         world.run_until(1.0)
@@ -46,7 +44,7 @@ def test_a_block_slips_at_the_angle_whose_tangent_is_the_product_of_frictions(fr
 
 
 @pytest.mark.parametrize("height", [0.5, 1.0, 5.0])
-def test_each_ball_of_the_row_leaves_with_its_own_restitution(height: float) -> None:
+def test_each_ball_of_the_row_leaves_with_its_own_restitution(height):
     chosen = choose("restitution-row", {"height": height})
     world = World(chosen.scene)
     world.run_until(1.2 * math.sqrt(2 * height / 9.81))
@@ -61,7 +59,7 @@ def test_each_ball_of_the_row_leaves_with_its_own_restitution(height: float) -> 
 @pytest.mark.parametrize(
     ("step", "told", "holds"), [(1 / 240, "", False), (0.0004, "inside", False), (0.0002, "meets", True)]
 )
-def test_a_bullet_tunnels_unless_half_the_wall_is_thicker_than_a_jump(step, told: str, holds: bool) -> None:
+def test_a_bullet_tunnels_unless_half_the_wall_is_thicker_than_a_jump(step, told, holds):
     chosen = choose("bullet-wall", {"step": step})
     world = World(chosen.scene, chosen.settings)
     world.run_until(0.05)
@@ -71,7 +69,7 @@ def test_a_bullet_tunnels_unless_half_the_wall_is_thicker_than_a_jump(step, told
     assert (world.state()[world._space.index["bullet"], 0] < 2.2) == holds
 
 
-def test_a_robot_turns_as_its_wheels_say_and_slips_beyond_its_grip() -> None:
+def test_a_robot_turns_as_its_wheels_say_and_slips_beyond_its_grip():
     chosen = choose("robot-boxes", {"left": 0.3, "right": 0.3})
     world = World(chosen.scene, chosen.settings)
     world.run_until(1.0)
@@ -82,7 +80,7 @@ def test_a_robot_turns_as_its_wheels_say_and_slips_beyond_its_grip() -> None:
     assert world.receipt.given > world.receipt.kinetic > 0
 
 
-def test_a_box_on_a_floor_slides_as_far_as_friction_lets_it() -> None:
+def test_a_box_on_a_floor_slides_as_far_as_friction_lets_it():
     world = World(choose("robot-boxes", {}).scene, {"left": 0.0, "right": 0.0})
     world.throw(0.4, -0.1, 0.0, -2.0)
     world.run_until(2.0)
@@ -95,7 +93,7 @@ def test_a_box_on_a_floor_slides_as_far_as_friction_lets_it() -> None:
 @pytest.mark.parametrize(
     "seed", [1, pytest.param(2, marks=pytest.mark.soak), pytest.param(3, marks=pytest.mark.soak)]
 )
-def test_galtons_heap_is_binomial_by_chi_squared(seed: int) -> None:
+def test_galtons_heap_is_binomial_by_chi_squared(seed):
     chosen = choose("galton-board", {"seed": seed})
     world = World(chosen.scene, receipt=False)
     world.run_until(chosen.scene.duration)

@@ -1,10 +1,7 @@
 """A recording gives the same run again, or says where it does not."""
 
-from __future__ import annotations
-
 import json
 import random
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -18,7 +15,7 @@ from course.sandbox.world.world import World
 NAMES = ["box-stack", "billiards-break", "robot-boxes", "restitution-row", "newtons-cradle", "head-on"]
 
 
-def random_run(seed: int, turns: int = 12) -> bytes:
+def random_run(seed, turns=12):
     """A run with everything a hand can do in it."""
     chance = random.Random(seed)
     chosen = choose(chance.choice(NAMES))
@@ -54,7 +51,7 @@ def random_run(seed: int, turns: int = 12) -> bytes:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_replay_of_random_input_is_the_same_bit_by_bit(seed: int, tmp_path: Path) -> None:
+def test_a_replay_of_random_input_is_the_same_bit_by_bit(seed, tmp_path):
     path = tmp_path / "run.jsonl"
     path.write_bytes(random_run(seed))
     difference = replay(read(path))
@@ -63,14 +60,14 @@ def test_a_replay_of_random_input_is_the_same_bit_by_bit(seed: int, tmp_path: Pa
 
 
 @pytest.mark.soak
-def test_a_thousand_replays_of_random_input_are_the_same(tmp_path: Path) -> None:
+def test_a_thousand_replays_of_random_input_are_the_same(tmp_path):
     path = tmp_path / "run.jsonl"
     for seed in range(1000, 2000):
         path.write_bytes(random_run(seed))
         assert replay(read(path)).same, seed
 
 
-def test_a_replay_says_between_which_steps_it_leaves_the_path(tmp_path: Path) -> None:
+def test_a_replay_says_between_which_steps_it_leaves_the_path(tmp_path):
     world = World(choose("billiards-break").scene)
     recording = Recording(world, every=10)
     world.step(200)
@@ -84,7 +81,7 @@ def test_a_replay_says_between_which_steps_it_leaves_the_path(tmp_path: Path) ->
     assert (difference.same, difference.tick, difference.good_until) == (False, 10, 0)
 
 
-def test_other_versions_are_named(tmp_path: Path) -> None:
+def test_other_versions_are_named(tmp_path):
     world = World(choose("head-on").scene)
     recording = Recording(world)
     world.step(5)
@@ -98,7 +95,7 @@ def test_other_versions_are_named(tmp_path: Path) -> None:
     assert difference.versions["pymunk"][0] == "6.0.0"
 
 
-def test_a_recording_cut_off_or_damaged_is_refused(tmp_path: Path) -> None:
+def test_a_recording_cut_off_or_damaged_is_refused(tmp_path):
     lines = random_run(3).splitlines()
     path = tmp_path / "run.jsonl"
     for data, error in (
@@ -118,7 +115,7 @@ def test_a_recording_cut_off_or_damaged_is_refused(tmp_path: Path) -> None:
         read(tmp_path / "nothing.jsonl")
 
 
-def test_what_a_recording_cannot_do_is_named_with_the_file_and_the_step(tmp_path: Path) -> None:
+def test_what_a_recording_cannot_do_is_named_with_the_file_and_the_step(tmp_path):
     world = World(choose("head-on").scene)
     recording = Recording(world)
     world.step(20)
@@ -134,7 +131,7 @@ def test_what_a_recording_cannot_do_is_named_with_the_file_and_the_step(tmp_path
             replay(read(path))
 
 
-def test_a_scene_that_a_recording_spoilt_is_refused_with_its_place(tmp_path) -> None:
+def test_a_scene_that_a_recording_spoilt_is_refused_with_its_place(tmp_path):
     path = tmp_path / "run.jsonl"
     head, _, rest = random_run(7, turns=4).partition(b"\n")
     scene = json.loads(head)["scene"]
@@ -146,7 +143,7 @@ def test_a_scene_that_a_recording_spoilt_is_refused_with_its_place(tmp_path) -> 
 
 @settings(max_examples=60)
 @given(st.data())
-def test_bytes_changed_anywhere_never_crash_a_replay(tmp_path_factory, data) -> None:
+def test_bytes_changed_anywhere_never_crash_a_replay(tmp_path_factory, data):
     lines = bytearray(random_run(7, turns=4))
     for _ in range(data.draw(st.integers(1, 4))):
         lines[data.draw(st.integers(0, len(lines) - 1))] = data.draw(st.integers(32, 126))
@@ -160,7 +157,7 @@ def test_bytes_changed_anywhere_never_crash_a_replay(tmp_path_factory, data) -> 
         pass
 
 
-def test_a_recording_begins_before_the_first_step() -> None:
+def test_a_recording_begins_before_the_first_step():
     world = World(choose("head-on").scene)
     world.step()
     with pytest.raises(UsageError):

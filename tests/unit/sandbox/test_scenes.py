@@ -1,7 +1,5 @@
 """Scenes are data: the course's own hold together, and a wrong one is refused with its line."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -62,13 +60,13 @@ DEEP = (
 )
 
 
-def write(folder: Path, text: str) -> Path:
+def write(folder, text):
     path = folder / "mine.toml"
     path.write_text(text, encoding="utf-8")
     return path
 
 
-def test_there_are_at_least_twelve_scenes_in_an_order_without_gaps() -> None:
+def test_there_are_at_least_twelve_scenes_in_an_order_without_gaps():
     found = scenes()
     assert len(found) >= 12
     assert [scene.order for scene in found] == list(range(1, len(found) + 1))
@@ -76,7 +74,7 @@ def test_there_are_at_least_twelve_scenes_in_an_order_without_gaps() -> None:
 
 
 @pytest.mark.parametrize("scene", scenes(), ids=lambda scene: scene.id)
-def test_every_scene_teaches_asks_and_shows_what_it_holds(scene) -> None:
+def test_every_scene_teaches_asks_and_shows_what_it_holds(scene):
     assert scene.note.strip()
     assert scene.prediction is not None
     left, bottom, right, top = scene.view
@@ -112,9 +110,7 @@ def test_every_scene_teaches_asks_and_shows_what_it_holds(scene) -> None:
         ('A test."', 'A test."\n[[joint]]\nkind = "rod"\na = "ball"\nb = "ball"', 42, "two"),
     ],
 )
-def test_a_wrong_scene_is_refused_with_its_line(
-    tmp_path: Path, old: str, new: str, line: int, words: str
-) -> None:
+def test_a_wrong_scene_is_refused_with_its_line(tmp_path, old, new, line, words):
     assert GOOD.count(old) == 1
     path = write(tmp_path, GOOD.replace(old, new))
     with pytest.raises(ContentError) as caught:
@@ -124,7 +120,7 @@ def test_a_wrong_scene_is_refused_with_its_line(
     assert caught.value.help
 
 
-def test_a_body_too_light_to_count_is_refused(tmp_path: Path) -> None:
+def test_a_body_too_light_to_count_is_refused(tmp_path):
     """Its moment was rounded to 0, which the engine answered with an assertion of its own."""
     path = write(tmp_path, GOOD.replace("radius = 0.1", "radius = 0.1\nmass = 5e-324"))
     with pytest.raises(UsageError, match=r"ball has a mass of 4\.94066e-324 kg"):
@@ -134,13 +130,13 @@ def test_a_body_too_light_to_count_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "points", ["[[0, 0], [1, 0]]", "[[0,0],[1,0],[0.2,0.2],[0,1]]", "[[0,0],[1,1],[1,0],[0,1]]"]
 )
-def test_a_polygon_that_is_not_convex_is_refused(tmp_path: Path, points: str) -> None:
+def test_a_polygon_that_is_not_convex_is_refused(tmp_path, points):
     text = GOOD.replace('shape = "circle"', 'shape = "polygon"').replace("radius = 0.1", f"points = {points}")
     with pytest.raises(ContentError, match="not convex"):
         read_scene(write(tmp_path, text))
 
 
-def test_a_polygon_stays_where_it_was_drawn_and_turns_about_its_middle(tmp_path: Path) -> None:
+def test_a_polygon_stays_where_it_was_drawn_and_turns_about_its_middle(tmp_path):
     text = GOOD.replace('shape = "circle"', 'shape = "polygon"').replace(
         "radius = 0.1", "points = [[0, 0], [0.3, 0], [0, 0.3]]"
     )
@@ -151,7 +147,7 @@ def test_a_polygon_stays_where_it_was_drawn_and_turns_about_its_middle(tmp_path:
     assert ball.moment == pytest.approx(ball.mass * 0.3**2 / 9)
 
 
-def test_an_unknown_scene_is_not_found_and_a_close_one_suggested() -> None:
+def test_an_unknown_scene_is_not_found_and_a_close_one_suggested():
     with pytest.raises(NotFoundError) as caught:
         choose("newton-cradle")
     assert caught.value.exit_code == 5
@@ -161,13 +157,13 @@ def test_an_unknown_scene_is_not_found_and_a_close_one_suggested() -> None:
 @pytest.mark.parametrize(
     "settings", [{"angle": 91}, {"wind": 1}, {"gravity": -1}, {"iterations": 2.5}, {"step": math.nan}]
 )
-def test_parameters_out_of_range_or_unknown_are_refused(settings: dict[str, float]) -> None:
+def test_parameters_out_of_range_or_unknown_are_refused(settings):
     with pytest.raises(UsageError):
         choose("incline", settings)
 
 
-def test_the_note_on_the_cradle_is_so() -> None:
-    def last(**settings: float) -> float:
+def test_the_note_on_the_cradle_is_so():
+    def last(**settings):
         return run(choose("newtons-cradle", settings), duration=1.0).probes["last-fastest"]
 
     pressed = {"gap": -1e-4}
@@ -176,22 +172,21 @@ def test_the_note_on_the_cradle_is_so() -> None:
     assert last(**pressed, iterations=1) > 2 * last(**pressed, iterations=1, backwards=1)
 
 
-def test_the_seed_alone_decides_the_jitter() -> None:
-    def places(seed: int) -> list[float]:
+def test_the_seed_alone_decides_the_jitter():
+    def places(seed):
         return [part.x for part in layout(choose("galton-board", {"seed": seed}).scene)]
 
     assert places(3) == places(3) != places(4)
 
 
-def test_no_file_of_the_scenes_is_forgotten() -> None:
+def test_no_file_of_the_scenes_is_forgotten():
     assert {path.suffix for path in FOLDER.iterdir()} == {".toml"}
 
 
-def test_the_template_of_a_new_scene_runs_as_it_is(tmp_path: Path) -> None:
+def test_the_template_of_a_new_scene_runs_as_it_is(tmp_path):
     template = Path(course.__file__).parent / "authoring" / "templates" / "scene.toml.tmpl"
     text = template.read_text(encoding="utf-8").replace("{{ id }}", "mine").replace("{{ order }}", "99")
     comparison = run(choose(str(write(tmp_path, text)))).comparison
-    assert comparison is not None
     assert comparison.agree
 
 
@@ -204,9 +199,8 @@ def test_a_scene_has_its_number_in_the_list_too():
         choose(str(len(scenes()) + 1))
 
 
-def test_balls_that_bounce_far_do_not_agree_with_galton() -> None:
+def test_balls_that_bounce_far_do_not_agree_with_galton():
     """What the scene's last question is about; at its own restitution they do."""
     for restitution, agrees in ((0.5, True), (0.6, False)):
         compared = run(choose("galton-board", {"restitution": restitution})).comparison
-        assert compared is not None
         assert compared.agree == agrees

@@ -1,7 +1,5 @@
 """A scene that is played: its history, any moment of it again, undo and redo."""
 
-from __future__ import annotations
-
 import random
 
 import numpy as np
@@ -15,22 +13,22 @@ from course.sandbox.views.stage import Stage
 from course.sandbox.world.engine import Ledger
 
 
-def make(name: str, **more) -> Stage:
+def make(name, **more):
     return Stage(choose(name, more.pop("settings", None)), **more)
 
 
-def watch(stage: Stage, seconds: float) -> None:
+def watch(stage, seconds):
     for _ in range(round(seconds * 60)):
         stage.tick(1 / 60, budget=60.0)
 
 
-def go_on_from(stage: Stage, t: float) -> None:
+def go_on_from(stage, t):
     stage.look(t)
     stage.go_on()
     stage.finish()
 
 
-def meddle(stage: Stage, chance: random.Random) -> None:
+def meddle(stage, chance):
     """Anything that hands can do."""
     world = stage.world
     left, bottom, right, top = world.scene.view
@@ -60,9 +58,9 @@ def meddle(stage: Stage, chance: random.Random) -> None:
 
 
 @pytest.mark.parametrize("name", scene_ids())
-def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name: str) -> None:
+def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name):
     chance, stage = random.Random(name), make(name)
-    seen: dict[int, str] = {}
+    seen = {}
     stage.world.on_tick.append((1, lambda world=stage.world: seen.update({world.ticks: world.state_hash()})))
     watch(stage, 0.2)
     x, y = (float(c) for c in stage.world.state()[0, :2])
@@ -82,7 +80,7 @@ def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name: st
 
 
 @pytest.mark.parametrize("name", scene_ids())
-def test_undo_and_redo_through_random_acts_return_to_the_same_bytes(name: str) -> None:
+def test_undo_and_redo_through_random_acts_return_to_the_same_bytes(name):
     chance, stage = random.Random(1), make(name)
     stage.world.paused = True
     states = played(stage, chance, 12)
@@ -96,7 +94,7 @@ def test_undo_and_redo_through_random_acts_return_to_the_same_bytes(name: str) -
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", scene_ids())
-def test_undo_and_redo_through_five_hundred_acts_return_to_the_same_bytes(name: str) -> None:
+def test_undo_and_redo_through_five_hundred_acts_return_to_the_same_bytes(name):
     chance, stage = random.Random(7), make(name)
     stage.world.paused = True
     for _ in range(
@@ -106,7 +104,7 @@ def test_undo_and_redo_through_five_hundred_acts_return_to_the_same_bytes(name: 
         taken_back_and_given_again(stage, states[-chance.randrange(2, 7) :])
 
 
-def played(stage: Stage, chance: random.Random, acts: int) -> list[tuple[bytes, dict[str, float]]]:
+def played(stage, chance, acts):
     """The states before each act that can be undone, and after the last."""
     states = []
     for _ in range(acts):
@@ -121,7 +119,7 @@ def played(stage: Stage, chance: random.Random, acts: int) -> list[tuple[bytes, 
     return states
 
 
-def taken_back_and_given_again(stage: Stage, states: list[tuple[bytes, dict[str, float]]]) -> None:
+def taken_back_and_given_again(stage, states):
     for state in reversed(states[:-1]):
         stage.undo()
         stage.finish()
@@ -132,7 +130,7 @@ def taken_back_and_given_again(stage: Stage, states: list[tuple[bytes, dict[str,
         assert (stage.world.state().tobytes(), stage.world.settings) == state
 
 
-def test_what_is_played_is_a_recording_that_replays_after_undo_reset_and_going_on(tmp_path) -> None:
+def test_what_is_played_is_a_recording_that_replays_after_undo_reset_and_going_on(tmp_path):
     stage, chance = make("restitution-row"), random.Random(1)
     for _ in range(3):
         watch(stage, 0.4)
@@ -152,7 +150,7 @@ def test_what_is_played_is_a_recording_that_replays_after_undo_reset_and_going_o
     assert stage.world.ticks > 240
 
 
-def test_any_moment_that_is_looked_at_is_the_one_that_was_seen() -> None:
+def test_any_moment_that_is_looked_at_is_the_one_that_was_seen():
     stage = make("newtons-cradle")
     seen = {}
     for _ in range(60):
@@ -175,7 +173,7 @@ def test_any_moment_that_is_looked_at_is_the_one_that_was_seen() -> None:
     assert stage.world.t > 1.0
 
 
-def test_the_run_before_is_a_ghost_and_so_is_what_was_left_behind() -> None:
+def test_the_run_before_is_a_ghost_and_so_is_what_was_left_behind():
     stage = make("head-on")
     watch(stage, 0.5)
     assert stage.ghost is None
@@ -186,7 +184,7 @@ def test_the_run_before_is_a_ghost_and_so_is_what_was_left_behind() -> None:
     assert stage.ghost.times[-1] == pytest.approx(0.2, abs=0.02)
 
 
-def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
+def test_going_on_shows_how_far_it_is_and_can_be_stopped():
     stage = make("galton-board")
     stage.act("set", "gravity", 5.0)
     stage.undo()
@@ -210,7 +208,7 @@ def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
 
 
 @pytest.mark.parametrize("name", ["billiards-break", "newtons-cradle", "robot-boxes", "galton-board"])
-def test_going_on_after_a_long_run_takes_what_is_known_from_its_tape(name: str, monkeypatch) -> None:
+def test_going_on_after_a_long_run_takes_what_is_known_from_its_tape(name, monkeypatch):
     """Far from the end nothing is booked again, and yet states, account, frames and ticks are the same."""
     monkeypatch.setattr("course.sandbox.views.stage._TOLD", 2.0)
     stage, booked = make(name), []
@@ -237,7 +235,7 @@ def test_going_on_after_a_long_run_takes_what_is_known_from_its_tape(name: str, 
     assert all(seen.get(one.tick, one.hash) == one.hash for one in stage.recording.hashes)
 
 
-def test_a_tape_is_known_only_up_to_where_two_histories_part() -> None:
+def test_a_tape_is_known_only_up_to_where_two_histories_part():
     stage = make("head-on")
     watch(stage, 20.0)
     stage.act("aim", "left" if stage.world.moves("left") else stage.world.parts[0].name, 0.5, 0.0)
@@ -252,7 +250,7 @@ def test_a_tape_is_known_only_up_to_where_two_histories_part() -> None:
     assert stage.tape.shared(stage.recording, 1, 39.0) == 0, "that run began at another moment"
 
 
-def test_a_parameter_starts_the_scene_anew_keeps_the_settings_and_can_be_undone() -> None:
+def test_a_parameter_starts_the_scene_anew_keeps_the_settings_and_can_be_undone():
     stage = make("newtons-cradle")
     stage.act("set", "gravity", 3.0)
     watch(stage, 0.2)
@@ -265,7 +263,7 @@ def test_a_parameter_starts_the_scene_anew_keeps_the_settings_and_can_be_undone(
     assert (stage.world.state_hash(), stage.chosen.parameters["angle"]) == (before, 30)
 
 
-def test_no_run_ends_and_the_comparison_is_made_on_the_way() -> None:
+def test_no_run_ends_and_the_comparison_is_made_on_the_way():
     kept = []
     stage = make("head-on", keep=kept.append)
     watch(stage, 0.5)
@@ -281,7 +279,7 @@ def test_no_run_ends_and_the_comparison_is_made_on_the_way() -> None:
 
 
 @pytest.mark.parametrize("name", ["free-fall", "head-on", "incline", "restitution-row", "box-stack"])
-def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name: str) -> None:
+def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name):
     stage = make(name, settings={"step": 0.0037})  # no number of steps ends with a picture
     watch(stage, stage.chosen.scene.duration + 1.0)
     seen = stage.experiment.report()["comparison"]
@@ -290,7 +288,7 @@ def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name: str) -
     assert stage.experiment.report()["comparison"] == seen
 
 
-def test_of_the_past_the_next_contact_is_the_next_one_marked_and_then_now() -> None:
+def test_of_the_past_the_next_contact_is_the_next_one_marked_and_then_now():
     stage = make("head-on")
     watch(stage, 1.0)
     stage.look(0.1)
@@ -300,7 +298,7 @@ def test_of_the_past_the_next_contact_is_the_next_one_marked_and_then_now() -> N
     assert stage.at is None
 
 
-def test_a_step_is_a_picture_the_next_contact_or_the_solvers() -> None:
+def test_a_step_is_a_picture_the_next_contact_or_the_solvers():
     stage = make("newtons-cradle", clock=lambda: 0.0)  # however busy the machine is, it is looked for
     stage.step()
     assert stage.world.t == pytest.approx(1 / 60, abs=1e-3)
@@ -311,7 +309,7 @@ def test_a_step_is_a_picture_the_next_contact_or_the_solvers() -> None:
     assert stage.world.paused
 
 
-def test_a_long_recording_thins_what_is_old_and_stays_small(monkeypatch) -> None:
+def test_a_long_recording_thins_what_is_old_and_stays_small(monkeypatch):
     monkeypatch.setattr("course.sandbox.runs.tape._BYTES", 60_000)
     stage = make("head-on")
     watch(stage, 20.0)

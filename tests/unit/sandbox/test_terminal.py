@@ -1,12 +1,7 @@
 """The view in a terminal, played with textual's pilot: keys, mouse, questions, sizes, ends."""
 
-from __future__ import annotations
-
 import asyncio
-import inspect
-from collections.abc import Callable
 from threading import Event
-from typing import Any
 
 import pytest
 from textual.widgets import Input, OptionList, Static
@@ -18,22 +13,23 @@ from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.terminal import view as terminal
 from course.sandbox.views.terminal.app import SandboxApp
 from course.sandbox.views.terminal.asking import Gallery, LineOverlay, PageOverlay
+from tests.piloted import as_test
 
 
 class Played(SandboxApp):
     """The view with a clock of its own: frames come when a test asks for them."""
 
-    def __init__(self, scene: str | None) -> None:
+    def __init__(self, scene):
         self.now = 0.0
-        self.kept: list[Any] = []
-        self.saved: dict[str, bytes] = {}
+        self.kept = []
+        self.saved = {}
 
-        def clock() -> float:
+        def clock():
             return self.now
 
         stage = Stage(choose(scene), keep=self.kept.append, clock=clock) if scene else None
 
-        def save(name: str, data: bytes) -> str:
+        def save(name, data):
             self.saved[name] = data
             return f"/home/me/{name}"
 
@@ -41,50 +37,39 @@ class Played(SandboxApp):
         # A machine under load is no reason to step less here.
         self._budget = 1e9
 
-    def begin(self) -> None:
+    def begin(self):
         if self._gallery_first:
             self.action_scenes()
 
-    def frames(self, count: int) -> None:
+    def frames(self, count):
         for _ in range(count):
             self.now += 1 / 30
             self.tick()
 
-    def at(self, name: str) -> tuple[int, int]:
+    def at(self, name):
         """Column and row on the screen of a body."""
         shot = self.world.snapshot()
         row = [part.name for part in self.world.parts].index(name)
         column, line = self.sight.camera.cell(float(shot.x[row]), float(shot.y[row]))
         return column + self.canvas.region.x, line + self.canvas.region.y
 
-    def point(self, name: str) -> None:
+    def point(self, name):
         """The pointer of the keys lies on a body."""
         column, row = self.at(name)
         self.pointer.at = column - self.canvas.region.x, row - self.canvas.region.y
 
 
-def on(
-    scene: str | None, size: tuple[int, int] = (80, 24)
-) -> Callable[[Callable[..., Any]], Callable[..., None]]:
-    """Make a script a test that plays this scene; what it takes beyond view and pilot, pytest gives."""
+def on(scene, size=(80, 24)):
+    """Make a script a test that plays this scene."""
 
-    def made(script: Callable[..., Any]) -> Callable[..., None]:
-        async def run(given: dict[str, Any]) -> None:
-            app = Played(scene)
-            async with app.run_test(size=size) as pilot:
-                await pilot.pause()
-                app.frames(1)
-                await script(app, pilot, **given)
+    async def played(script):
+        app = Played(scene)
+        async with app.run_test(size=size) as pilot:
+            await pilot.pause()
+            app.frames(1)
+            await script(app, pilot)
 
-        def test(**given: Any) -> None:
-            asyncio.run(run(given))
-
-        test.__name__, test.__module__ = script.__name__, script.__module__
-        _, _, *rest = inspect.signature(script).parameters.values()
-        test.__signature__ = inspect.Signature(rest)
-        return test
-
-    return made
+    return lambda script: as_test(script, lambda given, **_: asyncio.run(played(given)))
 
 
 @on("newtons-cradle")
@@ -242,7 +227,7 @@ async def test_the_past_is_looked_at_played_backwards_and_gone_on_from(app, pilo
 
 @on("head-on")
 async def test_a_step_while_another_moment_is_being_made_is_refused_in_words(app, pilot, monkeypatch):
-    def busy() -> None:
+    def busy():
         raise UsageError("One moment.")
 
     app.frames(30)
@@ -276,7 +261,7 @@ async def test_the_gallery_opens_any_scene_and_back(app, pilot):
 
 @on("head-on")
 async def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scene_ones_own(app, pilot):
-    async def say(line: str) -> None:
+    async def say(line):
         await pilot.press("slash")
         assert isinstance(app.screen, LineOverlay)
         app.screen.query_one(Input).value = line
@@ -308,7 +293,7 @@ async def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scen
 async def test_a_film_says_how_far_it_is_and_can_be_stopped(app, pilot, monkeypatch):
     drawn, go = Event(), Event()
 
-    def slow(self, scene, kind, width, told) -> bytes:
+    def slow(self, scene, kind, width, told):
         told(0.25)
         drawn.set()
         go.wait(20)
@@ -359,7 +344,7 @@ async def test_everything_a_mouse_does_keys_can_do(app, pilot):
 
 @pytest.mark.parametrize("size", [(80, 24), (160, 50), (60, 20), (40, 10), (12, 4), (1, 1)])
 @on("newtons-cradle", size=(100, 30))
-async def test_any_size_works_and_a_resize_lays_everything_out_again(app, pilot, size: tuple[int, int]):
+async def test_any_size_works_and_a_resize_lays_everything_out_again(app, pilot, size):
     app.frames(2)
     await pilot.resize_terminal(*size)
     await pilot.pause()
@@ -539,12 +524,12 @@ async def test_calm_means_four_pictures_a_second_and_no_flashes(app, pilot):
     drawn = 0
     draw = app._draw
 
-    def counted(now: float) -> None:
+    def counted(now):
         nonlocal drawn
         drawn += 1
         draw(now)
 
-    app._draw = counted  # type: ignore[method-assign]
+    app._draw = counted
     app.frames(30)
     assert 3 <= drawn <= 5
     assert app.sight._flashes == []
@@ -560,7 +545,6 @@ def without_colour(monkeypatch):
 async def test_no_color_is_honoured(app, pilot):
     app.frames(2)
     cells = app.canvas.cells
-    assert cells is not None
     assert not cells.paper.any()
     for y in range(app.canvas.size.height):
         for segment in app.canvas.render_line(y):
@@ -573,7 +557,7 @@ async def test_no_color_is_honoured(app, pilot):
 
 @pytest.mark.parametrize("keys", [["q"], ["ctrl+c"], ["ctrl+q"], ["p", "ctrl+c"]])
 @on("head-on")
-async def test_there_are_keys_to_leave_also_from_a_question(app, pilot, keys: list[str]):
+async def test_there_are_keys_to_leave_also_from_a_question(app, pilot, keys):
     await pilot.press(*keys)
     await pilot.pause()
     assert app._exit

@@ -1,7 +1,5 @@
 """The terminal's picture: what is where, and what is sent."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -14,12 +12,12 @@ from course.sandbox.world.world import World
 SIZE = (52, 19)
 
 
-def pictured(scene: str, *, colour: bool = True, size: tuple[int, int] = SIZE) -> tuple[World, Picture]:
+def pictured(scene, *, colour=True, size=SIZE):
     world = World(choose(scene).scene)
     return world, Picture(world.parts, Camera.fit(world.scene.view, *size), colour=colour)
 
 
-def text(cells) -> str:
+def text(cells):
     return "\n".join("".join(map(chr, row)) for row in cells.char)
 
 
@@ -30,7 +28,7 @@ def test_a_place_is_drawn_in_the_cell_that_stands_for_it():
 
 
 @pytest.mark.parametrize("size", [(10, 4), (52, 19), (114, 40), (200, 5)])
-def test_all_of_the_view_fits_into_any_window(size: tuple[int, int]):
+def test_all_of_the_view_fits_into_any_window(size):
     camera = Camera.fit((-3.0, -6.0, 3.0, 1.0), *size)
     for x, y in ((-2.999, -5.999), (2.999, 0.999)):
         column, row = camera.cell(x, y)
@@ -90,7 +88,7 @@ def test_without_colour_characters_tell_shapes_apart_and_no_colour_is_used():
 
 
 @pytest.mark.parametrize("colour", [True, False])
-def test_what_is_smaller_than_a_pixel_is_seen_nevertheless(colour: bool):
+def test_what_is_smaller_than_a_pixel_is_seen_nevertheless(colour):
     world, picture = pictured("bullet-wall", colour=colour)
     assert 0.02 * picture.camera.scale < 0.5  # the wall is thin, the bullet small
     cells = picture.draw(world.snapshot(), Overlay())
@@ -112,7 +110,7 @@ def test_a_body_that_is_nowhere_or_far_away_is_left_out():
 
 
 @pytest.mark.parametrize("colour", [True, False])
-def test_a_hand_a_pointer_and_a_flash_are_drawn(colour: bool):
+def test_a_hand_a_pointer_and_a_flash_are_drawn(colour):
     world, picture = pictured("head-on", colour=colour)
     bare = picture.draw(world.snapshot(), Overlay())
     for over in (

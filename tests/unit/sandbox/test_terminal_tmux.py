@@ -1,14 +1,10 @@
 """The view in a real terminal: tmux, with keys and a mouse as a terminal sends them."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
@@ -36,17 +32,17 @@ print("left the scene")
 """
 
 
-def start(terminal: Terminal, *arguments: str) -> None:
+def start(terminal, *arguments):
     terminal.line(f"{sys.executable} play.py {' '.join(arguments)}")
 
 
 @pytest.fixture
-def size() -> tuple[int, int]:
+def size():
     return 80, 24
 
 
 @pytest.fixture
-def terminal(tmp_path: Path, size: tuple[int, int]) -> Iterator[Terminal]:
+def terminal(tmp_path, size):
     (tmp_path / "play.py").write_text(PLAY, encoding="utf-8")
     made = Terminal(tmp_path, size)
     with contextlib.closing(made):
@@ -57,7 +53,7 @@ CLEAN = "0 0 1"
 
 
 @pytest.mark.parametrize("how", ["C-c", "INT", "TERM", "HUP"])
-def test_the_terminal_is_left_clean_however_one_leaves(terminal: Terminal, tmp_path: Path, how: str):
+def test_the_terminal_is_left_clean_however_one_leaves(terminal, tmp_path, how):
     start(terminal, "newtons-cradle")
     terminal.wait("o scenes")
     if how == "C-c":
@@ -68,7 +64,7 @@ def test_the_terminal_is_left_clean_however_one_leaves(terminal: Terminal, tmp_p
     assert terminal.state() == CLEAN
 
 
-def test_the_terminal_is_left_clean_after_an_error_which_is_reported_once(terminal: Terminal):
+def test_the_terminal_is_left_clean_after_an_error_which_is_reported_once(terminal):
     start(terminal, "head-on", "--fail")
     terminal.wait("RuntimeError: broken on purpose")
     time.sleep(0.5)
@@ -76,7 +72,7 @@ def test_the_terminal_is_left_clean_after_an_error_which_is_reported_once(termin
     assert terminal.state() == CLEAN
 
 
-def highest(scene: str, size: tuple[int, int]) -> tuple[str, int, int, tuple[int, int]]:
+def highest(scene, size):
     """The body without wheels that starts highest, its column and row, and a cell to pull it to."""
     chosen = choose(scene)
     world = World(chosen.scene, chosen.settings)
@@ -96,9 +92,7 @@ def highest(scene: str, size: tuple[int, int]) -> tuple[str, int, int, tuple[int
 
 @pytest.mark.parametrize("size", [(80, 24), (160, 50)], ids=["80x24", "160x50"])
 @pytest.mark.parametrize("scene", scene_ids())
-def test_every_scene_opens_runs_answers_the_mouse_and_leaves_the_terminal_clean(
-    terminal: Terminal, scene: str, size: tuple[int, int]
-):
+def test_every_scene_opens_runs_answers_the_mouse_and_leaves_the_terminal_clean(terminal, scene, size):
     name, column, row, to = highest(scene, size)
     start(terminal, scene)
     terminal.wait("o scenes")

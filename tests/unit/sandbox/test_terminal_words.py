@@ -1,7 +1,5 @@
 """Numbers, curves and lines beside the terminal's picture."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -20,7 +18,7 @@ from course.sandbox.views.terminal.words import (
 from course.sandbox.world.world import World
 
 
-def plain(line) -> str:
+def plain(line):
     return "".join(text for text, _ in line)
 
 
@@ -36,7 +34,7 @@ def plain(line) -> str:
         (-123456789.0, 1.0, "-1.2e8"),
     ],
 )
-def test_numbers_are_short_and_a_rounding_error_is_nothing(value: float, scale: float, text: str):
+def test_numbers_are_short_and_a_rounding_error_is_nothing(value, scale, text):
     assert shown(value, scale) == text
 
 
@@ -69,14 +67,14 @@ def test_words_wrap_and_too_long_ones_are_cut():
 
 
 @pytest.mark.parametrize("width", [20, 40, 60, 80, 160])
-def test_lines_above_and_below_fit(width: int):
+def test_lines_above_and_below_fit(width):
     world = World(choose("newtons-cradle").scene)
     world.speed = 1 / 1024
     assert len(plain(head(world, 0.0, "", 0.3, width))) <= width
     assert len(plain(keys_line(width, paused=True, past=True))) <= width
 
 
-def test_the_key_of_the_question_names_what_it_shows() -> None:
+def test_the_key_of_the_question_names_what_it_shows():
     for compared, word in ((False, "p predict"), (True, "p result")):
         assert word in plain(keys_line(80, paused=True, past=False, compared=compared))
 
@@ -89,7 +87,7 @@ def test_a_slow_machine_is_named_and_a_quick_one_is_not():
 
 @pytest.mark.parametrize(("width", "height"), [(23, 10), (23, 19), (27, 19), (43, 40), (43, 60)])
 @pytest.mark.parametrize("scene", ["newtons-cradle", "robot-boxes"])
-def test_the_panel_fits_and_its_energies_add_up(scene: str, width: int, height: int):
+def test_the_panel_fits_and_its_energies_add_up(scene, width, height):
     world = World(choose(scene).scene)
     world.run_until(0.3)
     lines = panel(world, [("angle", "30 deg")], width, height)

@@ -1,7 +1,5 @@
 """The page's server: who gets in, and what it says."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import importlib.util
@@ -35,7 +33,7 @@ OWN = {"origin": BASE}
 FILES = ("", *(f"{name}.js" for name in SCRIPTS), "page.js", "style.css", "icon.svg")
 
 
-def session(name: str = "restitution-row") -> Session:
+def session(name="restitution-row"):
     return Session(Stage(choose(name)))
 
 
@@ -45,12 +43,10 @@ def client():
         yield made
 
 
-def answer(
-    *headers: tuple[str, str], path: str = f"/{TOKEN}/", method: str = "GET", kind: str = "http"
-) -> int:
+def answer(*headers, path=f"/{TOKEN}/", method="GET", kind="http"):
     """The status that the guard alone gives a request with exactly these headers."""
 
-    async def inside(scope, receive, send) -> None:
+    async def inside(scope, receive, send):
         start = {"http": "http.response.start", "websocket": "websocket.accept"}[scope["type"]]
         await send({"type": start, "status": 200, "headers": []})
 
@@ -59,7 +55,7 @@ def answer(
 
     sent = []
 
-    async def send(message) -> None:
+    async def send(message):
         sent.append(message)
 
     scope = {
@@ -82,9 +78,7 @@ HOST = ("host", f"127.0.0.1:{PORT}")
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_every_file_is_served_to_whoever_has_the_token_and_loads_nothing_from_elsewhere(
-    client, name: str
-) -> None:
+def test_every_file_is_served_to_whoever_has_the_token_and_loads_nothing_from_elsewhere(client, name):
     got = client.get(f"/{TOKEN}/{name}")
     assert got.status_code == 200
     assert got.content == (STATIC / (name or "index.html")).read_bytes()
@@ -115,7 +109,7 @@ def test_every_file_is_served_to_whoever_has_the_token_and_loads_nothing_from_el
         f"//{TOKEN}/",
     ],
 )
-def test_without_the_token_there_is_nothing(client, path: str) -> None:
+def test_without_the_token_there_is_nothing(client, path):
     got = client.get(BASE + path, follow_redirects=False)
     assert got.status_code in ({404, 307} if path == f"/{TOKEN}" else {404})
     assert TOKEN not in got.text
@@ -124,7 +118,7 @@ def test_without_the_token_there_is_nothing(client, path: str) -> None:
 @pytest.mark.parametrize(
     "path", ["../web.py", "..%2fweb.py", "%2e%2e/web.py", "world.js/", "index.html", "static"]
 )
-def test_only_the_files_of_the_list_are_served(client, path: str) -> None:
+def test_only_the_files_of_the_list_are_served(client, path):
     assert client.get(f"/{TOKEN}/{path}", follow_redirects=False).status_code in {404, 307}
 
 
@@ -142,14 +136,14 @@ def test_only_the_files_of_the_list_are_served(client, path: str) -> None:
         "",
     ],
 )
-def test_another_name_for_this_machine_is_refused(client, host: str) -> None:
+def test_another_name_for_this_machine_is_refused(client, host):
     """A page elsewhere may let its own name point here; the browser then sends that name."""
     assert client.get(f"/{TOKEN}/", headers={"host": host}).status_code == 421
     with pytest.raises(WebSocketDisconnect), client.websocket_connect(SOCKET, headers={**OWN, "host": host}):
         pass
 
 
-def test_no_host_or_two_of_them_are_refused() -> None:
+def test_no_host_or_two_of_them_are_refused():
     assert answer(HOST) == 200
     assert answer() == 421
     assert answer(HOST, HOST) == 421
@@ -170,12 +164,12 @@ def test_no_host_or_two_of_them_are_refused() -> None:
         {**OWN, "sec-fetch-site": "same-site"},
     ],
 )
-def test_a_socket_from_any_other_page_is_refused(client, headers: dict[str, str]) -> None:
+def test_a_socket_from_any_other_page_is_refused(client, headers):
     with pytest.raises(WebSocketDisconnect), client.websocket_connect(SOCKET, headers=headers):
         pass
 
 
-def test_a_socket_without_the_token_is_refused(client) -> None:
+def test_a_socket_without_the_token_is_refused(client):
     for path in ("/socket", "/wrong/socket", f"/{TOKEN}x/socket"):
         with (
             pytest.raises(WebSocketDisconnect),
@@ -184,7 +178,7 @@ def test_a_socket_without_the_token_is_refused(client) -> None:
             pass
 
 
-def test_another_pages_script_gets_nothing(client) -> None:
+def test_another_pages_script_gets_nothing(client):
     page = f"/{TOKEN}/world.js"
     assert client.get(page, headers={"origin": "http://evil.example"}).status_code == 403
     assert (
@@ -200,7 +194,7 @@ def test_another_pages_script_gets_nothing(client) -> None:
 
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE"])
-def test_there_is_nothing_to_send_to(client, method: str) -> None:
+def test_there_is_nothing_to_send_to(client, method):
     assert client.request(method, f"/{TOKEN}/").status_code == 405
 
 
@@ -218,7 +212,7 @@ def test_there_is_nothing_to_send_to(client, method: str) -> None:
     path=st.one_of(st.just(f"/{TOKEN}/socket"), st.text(max_size=30).map(lambda text: "/" + text)),
     kind=st.sampled_from(["http", "websocket"]),
 )
-def test_whatever_is_sent_only_this_host_this_origin_and_this_token_get_in(headers, path, kind) -> None:
+def test_whatever_is_sent_only_this_host_this_origin_and_this_token_get_in(headers, path, kind):
     hosts = [value for key, value in headers if key == "host"]
     origins = [value for key, value in headers if key == "origin"]
     if answer(*headers, path=path, kind=kind) == 200:
@@ -227,7 +221,7 @@ def test_whatever_is_sent_only_this_host_this_origin_and_this_token_get_in(heade
         assert path.startswith(f"/{TOKEN}/")
 
 
-def test_the_guard_alone_knows_the_whole_token_and_the_methods() -> None:
+def test_the_guard_alone_knows_the_whole_token_and_the_methods():
     """What stands behind it would refuse as well; neither leans on the other."""
     assert answer(HOST, path=f"/{TOKEN}/anything") == 200
     for near in (TOKEN + "x", TOKEN[:-1], TOKEN[:-1] + "x", "", "é" * len(TOKEN)):
@@ -238,14 +232,14 @@ def test_the_guard_alone_knows_the_whole_token_and_the_methods() -> None:
 # -- what it says ----------------------------------------------------------------------------------------
 
 
-def receive(socket) -> dict | np.ndarray:
+def receive(socket):
     message = socket.receive()
     if message.get("text"):
         return json.loads(message["text"])
     return np.frombuffer(message["bytes"], "<f4")
 
 
-def test_a_page_is_told_everything_it_needs_to_draw() -> None:
+def test_a_page_is_told_everything_it_needs_to_draw():
     made = session()
     made.stage.world.throw(3, 1, 3.0, -4.0, reach=5.0)
     made.stage.world.paused = True  # the frame is compared with the world a moment later
@@ -278,7 +272,7 @@ def test_a_page_is_told_everything_it_needs_to_draw() -> None:
         assert frame[12] == pytest.approx(receipt.potential, rel=1e-6)
 
 
-def test_malformed_requests_are_answered_and_the_socket_stays_open() -> None:
+def test_malformed_requests_are_answered_and_the_socket_stays_open():
     made = session()
     with (
         TestClient(make_app(made, PORT, TOKEN), base_url=BASE) as client,
@@ -298,12 +292,12 @@ def test_malformed_requests_are_answered_and_the_socket_stays_open() -> None:
         assert "1024 bytes" in errors[3]
         assert "gravity must be" in errors[2]
         open_socket.send_text('{"do": "pause", "on": false}')
-        message: dict | np.ndarray = {}
+        message = {}
         while not (isinstance(message, np.ndarray) and message[0] == 1 and message[2] > 0):
             message = receive(open_socket)
 
 
-def test_too_many_pages_are_sent_away() -> None:
+def test_too_many_pages_are_sent_away():
     made = session()
     with TestClient(make_app(made, PORT, TOKEN), base_url=BASE) as client, contextlib.ExitStack() as stack:
         for _ in range(MAX_PAGES):
@@ -319,7 +313,7 @@ def test_too_many_pages_are_sent_away() -> None:
 # -- play ------------------------------------------------------------------------------------------------
 
 
-def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_extra_it_says_what_to_install(monkeypatch):
     chosen = choose("head-on")
     lines = ["numpy>=2", 'starlette>=7.5; extra == "web"', 'uvicorn<9,>=8; extra == "web"']
     monkeypatch.setattr("importlib.metadata.requires", lambda name: lines)
@@ -330,7 +324,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
     assert caught.value.help.endswith("pip install 'starlette>=7.5' 'uvicorn<9,>=8' 'websockets'")
 
 
-def test_it_listens_on_this_machine_only_and_a_port_that_is_taken_is_said() -> None:
+def test_it_listens_on_this_machine_only_and_a_port_that_is_taken_is_said():
     with contextlib.closing(web._listener(0)) as listener:
         assert listener.getsockname()[0] == "127.0.0.1"
         with socket.socket() as other:

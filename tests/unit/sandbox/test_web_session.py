@@ -1,12 +1,9 @@
 """A world behind a page: requests, time, predictions, and everything that may come over the wire."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,21 +15,21 @@ from course.sandbox.runs.running import run
 from course.sandbox.scene.loading import choose
 from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.stage import Desk, Stage
-from course.sandbox.views.web.session import REQUESTS, Page, Session
+from course.sandbox.views.web.session import REQUESTS, Session
 
 
 class Clock:
     """Real time that passes only when somebody looks, or is told to."""
 
-    def __init__(self, each: float = 0.0) -> None:
+    def __init__(self, each=0.0):
         self.now, self.each = 0.0, each
 
-    def __call__(self) -> float:
+    def __call__(self):
         self.now += self.each
         return self.now
 
 
-def make(name: str = "restitution-row", clock: Clock | None = None, **more) -> tuple[Session, Page]:
+def make(name="restitution-row", clock=None, **more):
     chosen, clock = choose(name, more.pop("settings", None)), clock or Clock()
     desk = more.pop("desk", None)
     made = Session(Stage(chosen, clock=clock, **more), desk, clock=clock)
@@ -41,25 +38,25 @@ def make(name: str = "restitution-row", clock: Clock | None = None, **more) -> t
     return made, page
 
 
-def told(page: Page) -> list[dict]:
+def told(page):
     """Every text a page was sent."""
     return [json.loads(data) for data in iter(page.take, None) if isinstance(data, str)]
 
 
-def frames(page: Page) -> list[np.ndarray]:
+def frames(page):
     """Every array of numbers a page was sent, the first of which says what they are."""
     return [np.frombuffer(data, "<f4") for data in iter(page.take, None) if isinstance(data, bytes)]
 
 
-def of(messages: list[dict], kind: str) -> list[dict]:
+def of(messages, kind):
     return [message for message in messages if message["type"] == kind]
 
 
-def send(made: Session, page: Page, do: str, **more) -> None:
+def send(made, page, do, **more):
     made.receive(page, json.dumps({"do": do, **more}))
 
 
-def watch(made: Session, seconds: float) -> None:
+def watch(made, seconds):
     """Real time passes in frames."""
     for _ in range(round(seconds * 60)):
         made.tick(1 / 60)
@@ -68,7 +65,7 @@ def watch(made: Session, seconds: float) -> None:
 # -- hands -----------------------------------------------------------------------------------------------
 
 
-def test_a_body_that_is_dragged_follows_the_hand_and_flies_on() -> None:
+def test_a_body_that_is_dragged_follows_the_hand_and_flies_on():
     made, page = make("head-on")
     send(made, page, "pause", on=False)
     send(made, page, "grab", x=-1, y=0, reach=0.1)
@@ -84,7 +81,7 @@ def test_a_body_that_is_dragged_follows_the_hand_and_flies_on() -> None:
     assert shot.vy[row] > 1.0
 
 
-def test_only_the_page_that_holds_a_body_moves_it_and_leaving_lets_go() -> None:
+def test_only_the_page_that_holds_a_body_moves_it_and_leaving_lets_go():
     made, page = make("head-on")
     other = made.join()
     assert other is not None
@@ -97,7 +94,7 @@ def test_only_the_page_that_holds_a_body_moves_it_and_leaving_lets_go() -> None:
     assert made.stage.world.held is None
 
 
-def test_a_push_by_name_adds_to_the_velocity_and_fixed_bodies_do_not_move() -> None:
+def test_a_push_by_name_adds_to_the_velocity_and_fixed_bodies_do_not_move():
     made, page = make()
     names = [part.name for part in made.stage.world.parts]
     send(made, page, "push", name="ball-3", vx=1.5, vy=0.5)
@@ -113,7 +110,7 @@ def test_a_push_by_name_adds_to_the_velocity_and_fixed_bodies_do_not_move() -> N
     ]
 
 
-def test_a_new_body_is_announced_before_the_frame_that_has_it() -> None:
+def test_a_new_body_is_announced_before_the_frame_that_has_it():
     made, page = make("head-on")
     told(page)
     send(made, page, "spawn", shape="box", x=0, y=1)
@@ -131,8 +128,8 @@ def test_a_new_body_is_announced_before_the_frame_that_has_it() -> None:
 # -- time ------------------------------------------------------------------------------------------------
 
 
-def test_nothing_passes_while_nobody_looks() -> None:
-    async def go(watching: bool, pages: bool) -> int:
+def test_nothing_passes_while_nobody_looks():
+    async def go(watching, pages):
         chosen = choose("head-on")
         made = Session(Stage(chosen))
         made.stage.world.paused = False
@@ -154,10 +151,10 @@ def test_nothing_passes_while_nobody_looks() -> None:
     assert asyncio.run(go(watching=True, pages=False)) == 0
 
 
-def test_a_hand_is_answered_before_the_next_frame_is_due(monkeypatch) -> None:
+def test_a_hand_is_answered_before_the_next_frame_is_due(monkeypatch):
     monkeypatch.setattr("course.sandbox.views.web.session._FPS", 0.2)
 
-    async def go() -> None:
+    async def go():
         made = Session(Stage(choose("head-on")))
         made.stage.world.paused = False
         page = made.join()
@@ -174,10 +171,10 @@ def test_a_hand_is_answered_before_the_next_frame_is_due(monkeypatch) -> None:
     asyncio.run(asyncio.wait_for(go(), 3))
 
 
-def test_a_world_ends_though_a_request_comes_in_the_same_moment(monkeypatch) -> None:
+def test_a_world_ends_though_a_request_comes_in_the_same_moment(monkeypatch):
     monkeypatch.setattr("course.sandbox.views.web.session._FPS", 0.2)
 
-    async def go() -> bool:
+    async def go():
         made = Session(Stage(choose("head-on")))
         page = made.join()
         task = asyncio.create_task(made.run())
@@ -191,7 +188,7 @@ def test_a_world_ends_though_a_request_comes_in_the_same_moment(monkeypatch) -> 
     assert asyncio.run(go())
 
 
-def test_a_world_that_is_too_much_work_runs_slower_and_says_so() -> None:
+def test_a_world_that_is_too_much_work_runs_slower_and_says_so():
     clock = Clock(each=0.002)
     made, page = make("head-on", clock=clock, settings={"step": 1e-5})
     send(made, page, "guess", value=None)
@@ -204,13 +201,13 @@ def test_a_world_that_is_too_much_work_runs_slower_and_says_so() -> None:
     assert frame[3] < 0.2
 
 
-def test_a_run_too_short_to_be_seen_starts_in_slow_motion() -> None:
+def test_a_run_too_short_to_be_seen_starts_in_slow_motion():
     made, _ = make("bullet-wall")
     assert made.stage.world.speed < 0.1
     assert make("head-on")[0].stage.world.speed == 1.0
 
 
-def test_of_frames_that_a_slow_page_did_not_fetch_only_the_newest_is_kept() -> None:
+def test_of_frames_that_a_slow_page_did_not_fetch_only_the_newest_is_kept():
     made, page = make("head-on")
     send(made, page, "guess", value=None)
     told(page)
@@ -219,7 +216,7 @@ def test_of_frames_that_a_slow_page_did_not_fetch_only_the_newest_is_kept() -> N
     assert frame[2] == pytest.approx(made.stage.world.t)
 
 
-def test_a_page_that_never_reads_is_let_go() -> None:
+def test_a_page_that_never_reads_is_let_go():
     made, page = make("head-on")
     for i in range(1000):
         made.stage.world.set("gravity", i % 2)
@@ -228,7 +225,7 @@ def test_a_page_that_never_reads_is_let_go() -> None:
     assert asyncio.run(page.fetch()) is None
 
 
-def test_after_a_reload_a_page_knows_what_happened_before() -> None:
+def test_after_a_reload_a_page_knows_what_happened_before():
     made, page = make("head-on")
     send(made, page, "guess", value=2)
     watch(made, 1.0)
@@ -250,7 +247,7 @@ def test_after_a_reload_a_page_knows_what_happened_before() -> None:
 
 
 @pytest.mark.parametrize("name", ["head-on", "restitution-row", "free-fall", "robot-boxes", "bullet-wall"])
-def test_the_run_that_was_watched_gives_what_a_run_unseen_gives(name: str) -> None:
+def test_the_run_that_was_watched_gives_what_a_run_unseen_gives(name):
     kept = []
     made, page = make(name, keep=kept.append)
     watch(made, 0.1)
@@ -264,7 +261,7 @@ def test_the_run_that_was_watched_gives_what_a_run_unseen_gives(name: str) -> No
     assert (last["stage"], last["comparison"]["verdict"]) == ("done", wanted.verdict)
 
 
-def test_settings_from_before_the_first_step_count_for_theory_too() -> None:
+def test_settings_from_before_the_first_step_count_for_theory_too():
     made, page = make("free-fall")
     send(made, page, "set", key="gravity", value=2)
     send(made, page, "guess", value=1)
@@ -284,7 +281,7 @@ def test_settings_from_before_the_first_step_count_for_theory_too() -> None:
         {"do": "set", "key": "restitution", "value": 0.2},
     ],
 )
-def test_a_run_that_somebody_meddled_with_is_not_compared(request_: dict) -> None:
+def test_a_run_that_somebody_meddled_with_is_not_compared(request_):
     kept = []
     made, page = make("head-on", keep=kept.append)
     send(made, page, "guess", value=2)
@@ -301,7 +298,7 @@ def test_a_run_that_somebody_meddled_with_is_not_compared(request_: dict) -> Non
     assert len(kept) == 1
 
 
-def test_a_reset_ends_the_story_of_the_run_before() -> None:
+def test_a_reset_ends_the_story_of_the_run_before():
     made, page = make("head-on")
     send(made, page, "pause", on=False)
     watch(made, 1)
@@ -314,8 +311,8 @@ def test_a_reset_ends_the_story_of_the_run_before() -> None:
     assert told(late)[0]["events"] == []
 
 
-def test_a_comparison_that_cannot_be_kept_is_still_shown() -> None:
-    def full(_) -> None:
+def test_a_comparison_that_cannot_be_kept_is_still_shown():
+    def full(_):
         raise MissingCapabilityError("The disk is full.")
 
     made, page = make("head-on", keep=full)
@@ -329,7 +326,7 @@ def test_a_comparison_that_cannot_be_kept_is_still_shown() -> None:
 # -- the time line, hands and the gallery --------------------------------------------------------------------
 
 
-def test_a_page_looks_at_the_past_and_goes_on_from_it() -> None:
+def test_a_page_looks_at_the_past_and_goes_on_from_it():
     made, page = make("newtons-cradle")
     watch(made, 1.5)
     told(page)
@@ -356,7 +353,7 @@ def test_a_page_looks_at_the_past_and_goes_on_from_it() -> None:
     assert [one[1] for one in shown if one[0] == 1 and one[21] == 1] == [ghosts[0]["version"]]
 
 
-def test_plots_get_every_sample_however_few_frames_there_were() -> None:
+def test_plots_get_every_sample_however_few_frames_there_were():
     made, page = make("head-on")
     told(page)
     for _ in range(10):
@@ -367,7 +364,7 @@ def test_plots_get_every_sample_however_few_frames_there_were() -> None:
     assert len(rows) == pytest.approx(60 * made.stage.world.t, abs=2)
 
 
-def test_start_and_given_are_in_every_frame_so_that_the_account_can_be_seen_to_close() -> None:
+def test_start_and_given_are_in_every_frame_so_that_the_account_can_be_seen_to_close():
     made, page = make("restitution-row")
     watch(made, 1.0)
     send(made, page, "spawn", shape="circle", x=0, y=1)
@@ -376,7 +373,7 @@ def test_start_and_given_are_in_every_frame_so_that_the_account_can_be_seen_to_c
     assert last[22] == pytest.approx(last[11:17].sum(), rel=1e-5)
 
 
-def test_the_gallery_shows_every_scene_with_a_loop_and_opens_any_in_place() -> None:
+def test_the_gallery_shows_every_scene_with_a_loop_and_opens_any_in_place():
     opened = []
     made = Session(None, Desk(played={"incline"}, opened=opened.append), clock=Clock())
     page = made.join()
@@ -399,8 +396,8 @@ def test_the_gallery_shows_every_scene_with_a_loop_and_opens_any_in_place() -> N
     assert "There is no scene" in of(told(page), "error")[-1]["message"]
 
 
-def test_a_parameter_and_an_own_copy_are_requests(tmp_path: Path) -> None:
-    def save(name: str, data: bytes) -> str:
+def test_a_parameter_and_an_own_copy_are_requests(tmp_path):
+    def save(name, data):
         (tmp_path / name).write_bytes(data)
         return str(tmp_path / name)
 
@@ -422,7 +419,7 @@ def test_a_parameter_and_an_own_copy_are_requests(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("kind", "begins"), [("gif", b"GIF89a"), ("png", b"\x89PNG")])
-def test_a_film_of_this_run_comes_as_a_file(kind: str, begins: bytes) -> None:
+def test_a_film_of_this_run_comes_as_a_file(kind, begins):
     made, page = make("head-on")
     watch(made, 1.0)
     told(page)
@@ -436,7 +433,7 @@ def test_a_film_of_this_run_comes_as_a_file(kind: str, begins: bytes) -> None:
     assert any('"head-on.' in one for one in data if isinstance(one, str))
 
 
-def test_undo_and_redo_are_offered_in_words() -> None:
+def test_undo_and_redo_are_offered_in_words():
     made, page = make("head-on")
     send(made, page, "pause", on=True)
     send(made, page, "place", name="left-puck", x=-1, y=0.5)
@@ -453,13 +450,13 @@ def test_undo_and_redo_are_offered_in_words() -> None:
     assert of(told(page), "error")[-1]["message"] == "There is nothing to undo."
 
 
-def test_a_guess_given_on_the_command_line_is_not_asked_for_again() -> None:
+def test_a_guess_given_on_the_command_line_is_not_asked_for_again():
     made, page = make("head-on", guess=1.0)
     assert told(page)[0]["status"]["stage"] == "run"
     assert not made.stage.world.paused
 
 
-def test_a_probe_that_read_nothing_reaches_the_page_as_null() -> None:
+def test_a_probe_that_read_nothing_reaches_the_page_as_null():
     made, page = make("head-on", settings={"speed": 0.1})
     made.stage.world.throw(1, 0, 5, 0)
     watch(made, 4)
@@ -496,10 +493,10 @@ ANYTHING = st.one_of(REQUEST, st.text(max_size=60), st.binary(max_size=60), st.j
 @settings(max_examples=120)
 @given(messages=st.lists(ANYTHING, max_size=12))
 @example(messages=['{"do":"grab","x":0.0,"y":0.0,"reach":10}', '{"do": "redo"}'])
-def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> None:
+def test_whatever_arrives_the_world_lives_on(messages):
     made, page = make("head-on")
 
-    def state() -> tuple:
+    def state():
         world = made.stage.world
         return world.ticks, dict(world.settings), world.state_hash(), world.held
 
@@ -524,14 +521,14 @@ def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> Non
 
 @settings(max_examples=60)
 @given(data=st.one_of(st.binary(max_size=200), st.text(max_size=200)))
-def test_what_is_no_request_is_answered_once_and_does_nothing(data: str | bytes) -> None:
+def test_what_is_no_request_is_answered_once_and_does_nothing(data):
     made, page = make("head-on")
     told(page)
     made.receive(page, data)
     assert [message["type"] for message in told(page)] == ["error"]
 
 
-def test_requests_beyond_the_rate_are_dropped_with_one_answer_and_a_flood_ends_the_page() -> None:
+def test_requests_beyond_the_rate_are_dropped_with_one_answer_and_a_flood_ends_the_page():
     clock = Clock()
     made, page = make("head-on", clock=clock)
     told(page)
@@ -550,7 +547,7 @@ def test_requests_beyond_the_rate_are_dropped_with_one_answer_and_a_flood_ends_t
     assert page.lost
 
 
-def test_no_number_of_a_page_makes_a_request_too_large_to_be_refused() -> None:
+def test_no_number_of_a_page_makes_a_request_too_large_to_be_refused():
     made, page = make("head-on")
     told(page)
     for text in (

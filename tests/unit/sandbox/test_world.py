@@ -22,10 +22,10 @@ from course.sandbox.world.engine import Ledger
 from course.sandbox.world.world import MAX_BODIES, World
 
 if TYPE_CHECKING:
-    import pymunk
+    pass
 
 
-def scene(*bodies: Body, gravity: tuple[float, float] = (0.0, 0.0), **more) -> Scene:
+def scene(*bodies, gravity=(0.0, 0.0), **more):
     return Scene(
         format_version=1,
         id="test",
@@ -42,7 +42,7 @@ def scene(*bodies: Body, gravity: tuple[float, float] = (0.0, 0.0), **more) -> S
     )
 
 
-def puck(name: str, x: float, vx: float, mass: float = 1.0, y: float = 0.0, vy: float = 0.0) -> Body:
+def puck(name, x, vx, mass=1.0, y=0.0, vy=0.0):
     return Body(
         name=name, shape="circle", material="m", radius=0.2, mass=mass, position=(x, y), velocity=(vx, vy)
     )
@@ -51,14 +51,14 @@ def puck(name: str, x: float, vx: float, mass: float = 1.0, y: float = 0.0, vy: 
 # -- time ------------------------------------------------------------------------------------------------
 
 
-def test_real_time_becomes_whole_steps_and_the_rest_is_kept() -> None:
+def test_real_time_becomes_whole_steps_and_the_rest_is_kept():
     world = World(scene(puck("a", 0, 1)))
     made = sum(world.advance(1 / 60) for _ in range(60))
     assert made == 240
     assert world.t == 1.0
 
 
-def test_the_step_does_not_follow_the_frame_rate() -> None:
+def test_the_step_does_not_follow_the_frame_rate():
     slow, fast = World(choose("billiards-break").scene), World(choose("billiards-break").scene)
     for _ in range(25):
         slow.advance(0.02)
@@ -68,7 +68,7 @@ def test_the_step_does_not_follow_the_frame_rate() -> None:
     assert slow.state_hash() == fast.state_hash()
 
 
-def test_a_stalled_view_does_not_race_and_a_paused_world_stands_still() -> None:
+def test_a_stalled_view_does_not_race_and_a_paused_world_stands_still():
     world = World(scene(puck("a", 0, 1)))
     assert world.advance(1000.0) == 60
     world.paused = True
@@ -77,7 +77,7 @@ def test_a_stalled_view_does_not_race_and_a_paused_world_stands_still() -> None:
     assert world.advance(0.1) == 12
 
 
-def test_time_is_a_count_of_steps_and_never_drifts() -> None:
+def test_time_is_a_count_of_steps_and_never_drifts():
     world = World(scene(puck("a", 0, 0), step=0.01))
     world.step(500)
     world.set("step", 0.02)
@@ -96,7 +96,7 @@ def test_time_is_a_count_of_steps_and_never_drifts() -> None:
     e=st.floats(0, 1),
     mu=st.floats(0, 2),
 )
-def test_two_bodies_keep_their_momentum_to_nine_digits(masses, speeds, offset, e, mu) -> None:
+def test_two_bodies_keep_their_momentum_to_nine_digits(masses, speeds, offset, e, mu):
     world = World(
         scene(puck("a", -1, speeds[0], masses[0]), puck("b", 1, speeds[1], masses[1], y=offset), e=e, mu=mu)
     )
@@ -108,7 +108,7 @@ def test_two_bodies_keep_their_momentum_to_nine_digits(masses, speeds, offset, e
 
 @settings(max_examples=30)
 @given(masses=st.tuples(st.floats(0.01, 100), st.floats(0.01, 100)), e=st.floats(0, 1))
-def test_two_bodies_lose_the_energy_that_restitution_says(masses, e) -> None:
+def test_two_bodies_lose_the_energy_that_restitution_says(masses, e):
     a, b = masses
     world = World(scene(puck("a", -1, 2.0, a), puck("b", 1, -1.0, b)), {"restitution": math.sqrt(e)})
     world.step(400)
@@ -117,7 +117,7 @@ def test_two_bodies_lose_the_energy_that_restitution_says(masses, e) -> None:
     assert world.receipt.residual == pytest.approx(0, abs=1e-9 * (a + b))
 
 
-def test_a_fall_makes_the_energy_that_position_first_integration_makes() -> None:
+def test_a_fall_makes_the_energy_that_position_first_integration_makes():
     world = World(scene(puck("a", 0, 0, mass=2.0), gravity=(0.0, -9.81), step=0.01))
     world.step(150)
     # m g h v / 2 with v = g t; and the height is short by g h t / 2.
@@ -127,7 +127,7 @@ def test_a_fall_makes_the_energy_that_position_first_integration_makes() -> None
     assert 9.81 * 1.5**2 / 2 - fallen == pytest.approx(9.81 * 0.01 * 1.5 / 2, rel=1e-12)
 
 
-def test_a_body_at_rest_gains_and_loses_nothing() -> None:
+def test_a_body_at_rest_gains_and_loses_nothing():
     chosen = choose("box-stack")
     world = World(chosen.scene)
     world.step(240 * 4)
@@ -139,7 +139,7 @@ def test_a_body_at_rest_gains_and_loses_nothing() -> None:
 
 
 @pytest.mark.parametrize("name", scene_ids())
-def test_nothing_but_the_integrator_is_in_the_residual(name: str) -> None:
+def test_nothing_but_the_integrator_is_in_the_residual(name):
     world = World(choose(name).scene)
     for _ in range(8):
         world.run_until(world.t + 0.25)
@@ -149,7 +149,7 @@ def test_nothing_but_the_integrator_is_in_the_residual(name: str) -> None:
     assert receipt.residual == pytest.approx(receipt.integrator, abs=1e-9)
 
 
-def session(name: str, seed: int) -> float:
+def session(name, seed):
     """Anything that hands do, at random: what no impulse and no step of the integrator accounts for.
 
     As a share of the larger of what was given and the largest kinetic energy.
@@ -203,11 +203,11 @@ def session(name: str, seed: int) -> float:
 
 
 @pytest.mark.parametrize("name", scene_ids())
-def test_whatever_hands_do_every_joule_has_an_impulse_of_its_own(name: str) -> None:
+def test_whatever_hands_do_every_joule_has_an_impulse_of_its_own(name):
     assert max(session(name, seed) for seed in (*range(5), 201)) < 0.01
 
 
-def test_a_hand_that_books_two_percent_too_much_is_found_out(monkeypatch) -> None:
+def test_a_hand_that_books_two_percent_too_much_is_found_out(monkeypatch):
     work = Ledger.work
     monkeypatch.setattr(Ledger, "work", lambda *given: 1.02 * work(*given))
     assert any(session(name, seed) > 0.01 for name in ("head-on", "restitution-row") for seed in range(20))
@@ -215,16 +215,16 @@ def test_a_hand_that_books_two_percent_too_much_is_found_out(monkeypatch) -> Non
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", scene_ids())
-def test_a_thousand_sessions_on_every_scene_leave_nothing_unaccounted_for(name: str) -> None:
+def test_a_thousand_sessions_on_every_scene_leave_nothing_unaccounted_for(name):
     worst = max(range(1000), key=lambda seed: session(name, seed))
     assert session(name, worst) < 0.01, worst
 
 
-def test_impulses_read_after_the_step_are_those_that_callbacks_see_inside_it() -> None:
+def test_impulses_read_after_the_step_are_those_that_callbacks_see_inside_it():
     world = World(choose("billiards-break").scene)
-    seen: dict[tuple[int, str, str], float] = {}
+    seen = {}
 
-    def post_solve(arbiter: pymunk.Arbiter, space, data) -> None:
+    def post_solve(arbiter, space, data):
         if arbiter.is_first_contact:
             names = sorted(world._space._bodies[body.id][0].name for body in arbiter.bodies)
             seen[world.steps + 1, names[0], names[1]] = arbiter.total_impulse.length
@@ -240,7 +240,7 @@ def test_impulses_read_after_the_step_are_those_that_callbacks_see_inside_it() -
     assert told == pytest.approx(seen, rel=1e-12)
 
 
-def test_a_world_without_a_receipt_says_so() -> None:
+def test_a_world_without_a_receipt_says_so():
     with pytest.raises(UsageError):
         _ = World(scene(puck("a", 0, 0)), receipt=False).receipt
 
@@ -250,7 +250,7 @@ def test_a_world_without_a_receipt_says_so() -> None:
 
 @settings(max_examples=12)  # of four scenes with seventeen bodies, others each time
 @given(data=st.data(), aside=st.tuples(st.floats(-0.4, 0.4), st.floats(-0.4, 0.4)))
-def test_holding_a_body_still_costs_nothing(data, aside) -> None:
+def test_holding_a_body_still_costs_nothing(data, aside):
     """Whatever answers the hand: a rod, the floor. Else the hand books what they undo in the same step."""
     name = data.draw(st.sampled_from(["newtons-cradle", "pendulum-wall", "free-fall", "box-stack"]))
     world = World(choose(name).scene)
@@ -274,7 +274,7 @@ def test_holding_a_body_still_costs_nothing(data, aside) -> None:
 
 
 @pytest.mark.parametrize(("scene_name", "body"), [("newtons-cradle", "ball-2"), ("pendulum-wall", "ball")])
-def test_a_throw_along_a_rod_is_lost_in_the_rod_and_not_by_the_solver(scene_name: str, body: str) -> None:
+def test_a_throw_along_a_rod_is_lost_in_the_rod_and_not_by_the_solver(scene_name, body):
     world = World(choose(scene_name).scene)
     world.run_until(0.3)
     row = world._space.index[body]
@@ -296,7 +296,7 @@ def test_a_throw_along_a_rod_is_lost_in_the_rod_and_not_by_the_solver(scene_name
     assert world.samples()[-1][5] == pytest.approx(world.receipt.rods, rel=1e-2)
 
 
-def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws() -> None:
+def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws():
     world = World(scene(puck("a", 0, 0)))
     assert world.grab(0.1, 0.0) == "a" == world.held
     world.drag(2.0, 1.0)
@@ -310,12 +310,12 @@ def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws() -> None:
     assert float(world.state()[0, 3]) > 1.0
 
 
-def where(world: World, name: str) -> tuple[float, float]:
+def where(world, name):
     x, y = world.state()[world._space.index[name], :2]
     return float(x), float(y)
 
 
-def test_a_body_that_is_placed_hangs_on_its_rod_and_beside_its_neighbours() -> None:
+def test_a_body_that_is_placed_hangs_on_its_rod_and_beside_its_neighbours():
     world = World(choose("newtons-cradle").scene)
     assert world.place("ball-1", -1.2, 0.5)
     assert world.place("ball-2", -1.1, 0.4)
@@ -328,18 +328,18 @@ def test_a_body_that_is_placed_hangs_on_its_rod_and_beside_its_neighbours() -> N
     assert receipt.residual == pytest.approx(receipt.integrator, abs=1e-9)
 
 
-def test_a_body_that_finds_no_room_stays_where_it_was() -> None:
+def test_a_body_that_finds_no_room_stays_where_it_was():
     block = {"shape": "box", "material": "m", "fixed": True, "size": (1.0, 1.0)}
     walls = [Body(name=f"w-{i}", position=(x, 0.0), **block) for i, x in enumerate((1.0, 2.05))]
     world = World(scene(*walls, puck("a", -1, 0)))
     before = world.state_hash()
-    inputs: list = []
+    inputs = []
     world.on_input.append(lambda *given: inputs.append(given))
     assert not world.place("a", 1.525, 0.0)
     assert (world.state_hash(), inputs) == (before, [])
 
 
-def test_bodies_are_copied_taken_away_changed_and_stopped_by_name() -> None:
+def test_bodies_are_copied_taken_away_changed_and_stopped_by_name():
     world = World(choose("box-stack").scene)
     assert world.copy("box-3") == "new-1"
     world.remove("box-5")
@@ -361,7 +361,7 @@ def test_bodies_are_copied_taken_away_changed_and_stopped_by_name() -> None:
             act()
 
 
-def test_walls_keep_everything_in_sight() -> None:
+def test_walls_keep_everything_in_sight():
     world = World(scene(puck("a", 0, 3.0, vy=2.0)), {"walls": 1.0})
     world.step(240 * 20)
     assert max(abs(c) for c in where(world, "a")) < 5.0
@@ -370,13 +370,13 @@ def test_walls_keep_everything_in_sight() -> None:
     assert [part.name for part in world.parts] == ["a"]
 
 
-def test_nothing_is_grabbed_where_nothing_movable_is() -> None:
+def test_nothing_is_grabbed_where_nothing_movable_is():
     world = World(choose("box-stack").scene)
     assert world.grab(0.9, -0.1) is None
     assert world.grab(0.0, 0.55) == "box-6"
 
 
-def test_a_held_body_does_not_pass_through_a_wall() -> None:
+def test_a_held_body_does_not_pass_through_a_wall():
     wall = Body(name="wall", shape="box", material="m", size=(0.2, 9), position=(1, 0), fixed=True)
     world = World(scene(wall, puck("a", 0, 0)))
     world.grab(0, 0)
@@ -385,7 +385,7 @@ def test_a_held_body_does_not_pass_through_a_wall() -> None:
     assert float(world.state()[world._space.index["a"], 0]) < 1.0
 
 
-def test_a_spawned_body_joins_in_with_energy_that_was_given() -> None:
+def test_a_spawned_body_joins_in_with_energy_that_was_given():
     world = World(scene(puck("a", 0, 0)))
     version = world.version
     name = world.spawn("box", 1, 1, 2, 0, 0.1)
@@ -396,7 +396,7 @@ def test_a_spawned_body_joins_in_with_energy_that_was_given() -> None:
         world.spawn("blob", 0, 0)
 
 
-def test_there_is_a_limit_to_spawning() -> None:
+def test_there_is_a_limit_to_spawning():
     row = Body(
         name="a",
         shape="circle",
@@ -410,7 +410,7 @@ def test_there_is_a_limit_to_spawning() -> None:
         world.spawn("circle", 0, 2)
 
 
-def test_a_body_that_leaves_is_gone_and_the_books_still_balance() -> None:
+def test_a_body_that_leaves_is_gone_and_the_books_still_balance():
     world = World(scene(puck("a", 0, 0), puck("b", 1, 1000.0)))
     world.step(240)
     assert [event.a for event in world.drain_events() if event.kind == "gone"] == ["b"]
@@ -418,7 +418,7 @@ def test_a_body_that_leaves_is_gone_and_the_books_still_balance() -> None:
     assert world.receipt.residual == pytest.approx(0, abs=1e-6)
 
 
-def test_a_reset_brings_the_start_back_and_keeps_the_settings() -> None:
+def test_a_reset_brings_the_start_back_and_keeps_the_settings():
     world = World(choose("restitution-row").scene)
     start = world.state_hash()
     world.set("gravity", 1.62)
@@ -446,7 +446,7 @@ def test_a_reset_brings_the_start_back_and_keeps_the_settings() -> None:
         lambda w: w.spawn("circle", None, 0),
     ],
 )
-def test_what_is_no_number_or_out_of_range_is_refused_and_changes_nothing(act) -> None:
+def test_what_is_no_number_or_out_of_range_is_refused_and_changes_nothing(act):
     world = World(scene(puck("a", 0, 0)))
     before = world.state_hash(), dict(world.settings)
     with pytest.raises(UsageError):
@@ -454,15 +454,15 @@ def test_what_is_no_number_or_out_of_range_is_refused_and_changes_nothing(act) -
     assert (world.state_hash(), world.settings) == before
 
 
-def test_restitution_and_friction_of_a_pair_are_products() -> None:
+def test_restitution_and_friction_of_a_pair_are_products():
     world = World(scene(puck("a", -1, 1), puck("b", 1, -1), e=1.0), {"restitution": 0.8})
     world.step(400)
     event = next(event for event in world.drain_events() if event.kind == "contact")
     assert event.leave == pytest.approx(0.64 * event.approach)
 
 
-def test_the_order_of_adding_bodies_changes_a_chaotic_outcome_and_not_a_simple_one() -> None:
-    def end(name: str, backwards: int) -> list[float]:
+def test_the_order_of_adding_bodies_changes_a_chaotic_outcome_and_not_a_simple_one():
+    def end(name, backwards):
         world = World(choose(name, {"backwards": backwards}).scene)
         world.run_until(3.0)
         where = {part.name: row[:2].tolist() for part, row in zip(world.parts, world.state(), strict=True)}
@@ -474,7 +474,7 @@ def test_the_order_of_adding_bodies_changes_a_chaotic_outcome_and_not_a_simple_o
 
 @pytest.mark.soak
 @pytest.mark.skipif(sys.platform != "linux", reason="the pages of a process are counted through /proc")
-def test_a_day_of_simulated_time_leaks_nothing() -> None:
+def test_a_day_of_simulated_time_leaks_nothing():
     import resource
 
     # The ideal ball of this scene bounces for ever, so there are always new contacts to keep or forget.
@@ -483,7 +483,7 @@ def test_a_day_of_simulated_time_leaks_nothing() -> None:
     world = World(choose("restitution-row").scene)
     world.set("step", 1 / 60)
 
-    def hours(count: int) -> tuple[int, int]:
+    def hours(count):
         contacts = 0
         for _ in range(6 * count):
             world.step(60 * 600)

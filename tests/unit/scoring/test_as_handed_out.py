@@ -1,7 +1,5 @@
 """What a file that is hardly begun is told: functions as handed out, and marks that a merge left."""
 
-from __future__ import annotations
-
 import pytest
 
 from course.catalog.load import Catalog
@@ -23,12 +21,12 @@ STUB = COLLISIONS.stub_path.read_text("utf-8")
         (STUB + "\n\ndef impulse_1d(*given):\n    return 0.0\n", {"impulse_1d"}),
     ],
 )
-def test_what_is_tried_below_the_functions_does_not_touch_them(text: str, touched: set[str]) -> None:
+def test_what_is_tried_below_the_functions_does_not_touch_them(text, touched):
     found = untouched(COLLISIONS, Submission({COLLISIONS.module: text.encode()}))
     assert {task.id for task in COLLISIONS.task} - found == touched
 
 
-def test_the_marks_of_a_merge_are_told_so_on_their_lines() -> None:
+def test_the_marks_of_a_merge_are_told_so_on_their_lines():
     lines = ["x = (1,", "<<<<<<< HEAD", "    2)", "=======", "    3)", ">>>>>>> other"]
     first = STUB.count("\n") + 1
     with GradingSession(COLLISIONS, CATALOG, scope="public") as session:

@@ -1,10 +1,7 @@
 """From a wrong value to a named mistake: fingerprints, what a table says, and one story for a task."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from pathlib import Path
 from time import process_time
 from types import SimpleNamespace
 
@@ -48,15 +45,15 @@ WORDS = Words(
 )
 
 
-def guess(code: str) -> Diagnosis:
+def guess(code):
     return WORDS(code) if code in WORDS.entries else Diagnosis(code, "", "")
 
 
-def failures(*codes: str | None, finite: bool = True) -> list[Failure]:
+def failures(*codes, finite=True):
     return [Failure(f"check_{i}", code and guess(code), finite) for i, code in enumerate(codes)]
 
 
-def told(*codes: str | None, fits: tuple[Row, ...] = (), finite: bool = True) -> str | None:
+def told(*codes, fits=(), finite=True):
     found = story_of(failures(*codes, finite=finite), fits, WORDS).diagnosis
     return found and found.code
 
@@ -65,7 +62,7 @@ def told(*codes: str | None, fits: tuple[Row, ...] = (), finite: bool = True) ->
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_the_same_answers_in_another_form_order_and_rounding_have_the_same_fingerprint(seed: int) -> None:
+def test_the_same_answers_in_another_form_order_and_rounding_have_the_same_fingerprint(seed):
     rng = np.random.default_rng(seed)
     path, flag = rng.normal(size=(40, 3)) * 10.0 ** rng.integers(-3, 6), bool(rng.integers(2))
     one = fingerprint([(path, flag, None), 2, np.float64(1.5), {"kp": 2.0, "kd": 1.0}])
@@ -92,40 +89,40 @@ def test_the_same_answers_in_another_form_order_and_rounding_have_the_same_finge
         ([10**400], [1.0]),
     ],
 )
-def test_other_answers_have_another_fingerprint(one: list[object], other: list[object]) -> None:
+def test_other_answers_have_another_fingerprint(one, other):
     pairs = zip(fingerprint(one), fingerprint(other), strict=True)
     assert any(abs(a - b) > 10 * SAME for a, b in pairs)
 
 
-def test_an_exercise_may_ask_by_itself_and_give_numbers_for_each_part_of_a_task() -> None:
+def test_an_exercise_may_ask_by_itself_and_give_numbers_for_each_part_of_a_task():
     module = SimpleNamespace(
         QUESTIONS={"half": [(4.0,), (6.0,)], "quarter": []},
         READ={"half": lambda value: value + 1},
         ASK={"report": lambda answer, names: {name: answer([(8.0,)]) for name in sorted(names)}},
     )
 
-    def answer(calls: list[tuple[float]]) -> list[float]:
+    def answer(calls):
         return [x / 2 for (x,) in calls]
 
-    assert tasks_asked(module) == {"half", "quarter", "report"}  # type: ignore[arg-type]
-    assert answer_numbers(module, "half", answer) == {"half": fingerprint([3.0, 4.0])}  # type: ignore[arg-type]
-    assert answer_numbers(module, "half", answer, within=0.1) == {"half": (3.0, 4.0)}  # type: ignore[arg-type]
-    assert answer_numbers(module, "quarter", answer) == {}  # type: ignore[arg-type]
+    assert tasks_asked(module) == {"half", "quarter", "report"}
+    assert answer_numbers(module, "half", answer) == {"half": fingerprint([3.0, 4.0])}
+    assert answer_numbers(module, "half", answer, within=0.1) == {"half": (3.0, 4.0)}
+    assert answer_numbers(module, "quarter", answer) == {}
     names = frozenset({"report.a", "report.b"})
-    assert answer_numbers(module, "report", answer, names=names) == {"report.a": (4.0,), "report.b": (4.0,)}  # type: ignore[arg-type]
+    assert answer_numbers(module, "report", answer, names=names) == {"report.a": (4.0,), "report.b": (4.0,)}
 
 
 # -- the table --------------------------------------------------------------------------------------------
 
 
-def test_of_an_answer_counts_what_its_reader_gives_and_what_it_cannot_read_is_an_exception() -> None:
+def test_of_an_answer_counts_what_its_reader_gives_and_what_it_cannot_read_is_an_exception():
     assert read({"t": 1.0, "memory": [3]}, lambda twin: twin["t"]) == 1.0
     assert read(None, lambda twin: twin["t"]) == {"raised": "TypeError"}
     assert read({"raised": "ValueError"}, lambda twin: twin["t"]) == {"raised": "ValueError"}
     assert read([3], None) == [3]
 
 
-def test_of_the_programs_that_fit_those_with_fewest_mistakes_count(tmp_path: Path) -> None:
+def test_of_the_programs_that_fit_those_with_fewest_mistakes_count(tmp_path):
     rows = {"f": (Row(("A_B",), (1.0, 2.0)), Row(("A_B", "C_D"), (1.0, 2.0)), Row(("C_D",), (3.0, 2.0)))}
     table = Table(rows=rows, right={"f": ((0.0, 0.0),)}, made_from="x")
     table_path(tmp_path).write_bytes(msgspec.json.encode(table))
@@ -137,7 +134,7 @@ def test_of_the_programs_that_fit_those_with_fewest_mistakes_count(tmp_path: Pat
     assert not is_right(table, "f", (1.0, 2.0))
 
 
-def test_answers_within_a_tolerance_are_compared_as_they_are(tmp_path: Path) -> None:
+def test_answers_within_a_tolerance_are_compared_as_they_are(tmp_path):
     table = Table(rows={"f": (Row(("A_B",), (2.0, 1e300)),)}, within={"f": 0.02})
     assert matching(table, "f", (2.03, 1e300))
     assert not matching(table, "f", (2.1, 1e300))
@@ -152,9 +149,7 @@ def test_answers_within_a_tolerance_are_compared_as_they_are(tmp_path: Path) -> 
     ],
     ids=["damaged", "words of no known kind"],
 )
-def test_what_is_no_table_is_refused_with_the_command_that_makes_it_anew(
-    tmp_path: Path, text: str, said: str
-) -> None:
+def test_what_is_no_table_is_refused_with_the_command_that_makes_it_anew(tmp_path, text, said):
     table_path(tmp_path).write_text(text, "utf-8")
     with pytest.raises(ContentError) as error:
         read_table(tmp_path)
@@ -165,17 +160,17 @@ def test_what_is_no_table_is_refused_with_the_command_that_makes_it_anew(
 # -- the story --------------------------------------------------------------------------------------------
 
 
-def test_a_program_that_fits_decides_whatever_the_probes_say() -> None:
+def test_a_program_that_fits_decides_whatever_the_probes_say():
     assert told("MASS_SWAPPED", "ENERGY_GROWS", fits=(Row(("SIGN_FLIPPED",), (0.0,)),)) == "SIGN_FLIPPED"
 
 
-def test_programs_that_answer_alike_are_one_and_a_probe_chooses_the_name() -> None:
+def test_programs_that_answer_alike_are_one_and_a_probe_chooses_the_name():
     fits = Row(("SIGN_FLIPPED",), (0.0,)), Row(("MASS_SWAPPED",), (0.0,))
     assert told(None, fits=fits) == "SIGN_FLIPPED"
     assert told("MASS_SWAPPED", fits=fits) == "MASS_SWAPPED"
 
 
-def test_of_programs_with_two_mistakes_what_they_share_is_named() -> None:
+def test_of_programs_with_two_mistakes_what_they_share_is_named():
     fits = Row(("SIGN_FLIPPED", "MASS_SWAPPED"), (0.0,)), Row(("ENERGY_GROWS", "MASS_SWAPPED"), (0.0,))
     assert common(fits) == ("MASS_SWAPPED",)
     shared = story_of(failures(None), fits, WORDS).diagnosis
@@ -186,13 +181,13 @@ def test_of_programs_with_two_mistakes_what_they_share_is_named() -> None:
     assert WORDS.entries["MASS_SWAPPED"].looks_like in both.looks_like
 
 
-def test_a_consequence_is_said_only_where_no_cause_is() -> None:
+def test_a_consequence_is_said_only_where_no_cause_is():
     assert told("ENERGY_GROWS", "SIGN_FLIPPED", "ENERGY_GROWS") == "SIGN_FLIPPED"
     assert told("ENERGY_GROWS", None) == "ENERGY_GROWS"
 
 
-def test_a_consequence_is_said_of_the_checks_that_saw_it_and_a_cause_of_none_that_saw_another() -> None:
-    def bare(*codes: str | None) -> frozenset[str]:
+def test_a_consequence_is_said_of_the_checks_that_saw_it_and_a_cause_of_none_that_saw_another():
+    def bare(*codes):
         return story_of(failures(*codes), (), WORDS).bare
 
     assert bare("ENERGY_GROWS", None) == {"check_1"}
@@ -200,7 +195,7 @@ def test_a_consequence_is_said_of_the_checks_that_saw_it_and_a_cause_of_none_tha
     assert bare("SIGN_FLIPPED", "SIGN_FLIPPED", "MASS_SWAPPED") == {"check_2"}
 
 
-def test_a_cause_is_not_said_of_a_check_whose_own_probe_did_not_find_it() -> None:
+def test_a_cause_is_not_said_of_a_check_whose_own_probe_did_not_find_it():
     (saw, plain), (looked,) = failures("SIGN_FLIPPED", None), [Failure("check_2", None, looked=True)]
     story = story_of([saw, plain, looked], (), WORDS)
     assert story.diagnosis.code == "SIGN_FLIPPED"
@@ -209,19 +204,19 @@ def test_a_cause_is_not_said_of_a_check_whose_own_probe_did_not_find_it() -> Non
     assert story_of([saw, looked], (Row(("SIGN_FLIPPED",), (0.0,)),), WORDS).bare == frozenset()
 
 
-def test_of_several_causes_the_one_that_most_checks_name_is_told_and_of_as_many_none() -> None:
+def test_of_several_causes_the_one_that_most_checks_name_is_told_and_of_as_many_none():
     assert told("SIGN_FLIPPED", "MASS_SWAPPED", "SIGN_FLIPPED") == "SIGN_FLIPPED"
     assert told("SIGN_FLIPPED", "MASS_SWAPPED") is None
 
 
-def test_where_a_value_is_nan_only_what_makes_it_nan_is_told() -> None:
+def test_where_a_value_is_nan_only_what_makes_it_nan_is_told():
     assert told("SIGN_FLIPPED", "NOT_A_NUMBER", finite=False) == "NOT_A_NUMBER"
     assert told("ZERO_LENGTH", "ZERO_LENGTH", finite=False) == "ZERO_LENGTH"
     assert told("ZERO_LENGTH", "NOT_A_NUMBER", finite=False) == "NOT_A_NUMBER"
     assert told("SIGN_FLIPPED", finite=False) is None
 
 
-def test_a_nan_is_told_where_it_was_met_and_other_checks_keep_what_they_saw() -> None:
+def test_a_nan_is_told_where_it_was_met_and_other_checks_keep_what_they_saw():
     met, finite = failures("NOT_A_NUMBER", finite=False), failures(None, "ZERO_LENGTH", "ENERGY_GROWS")[1:]
     story = story_of([*met, *finite], (), WORDS)
     assert story.diagnosis.code == "NOT_A_NUMBER"
@@ -234,7 +229,7 @@ def test_a_nan_is_told_where_it_was_met_and_other_checks_keep_what_they_saw() ->
     assert "check_1" in story.own
 
 
-def test_a_check_that_saw_a_fact_keeps_it() -> None:
+def test_a_check_that_saw_a_fact_keeps_it():
     story = story_of(failures("CHANGED_IN_PLACE", "SIGN_FLIPPED"), (), WORDS)
     assert story.own == {"check_0"}
     assert story.diagnosis.code == "SIGN_FLIPPED"
@@ -243,7 +238,7 @@ def test_a_check_that_saw_a_fact_keeps_it() -> None:
 # -- which function calls which ---------------------------------------------------------------------------
 
 
-def test_where_a_path_first_differs_is_said_only_by_the_check_that_saw_it() -> None:
+def test_where_a_path_first_differs_is_said_only_by_the_check_that_saw_it():
     check = CheckResult(
         id="order", title="Order", task="rk4_step", status="fail", visibility="public", points=0, max_points=1
     )
@@ -255,7 +250,7 @@ def test_where_a_path_first_differs_is_said_only_by_the_check_that_saw_it() -> N
     assert (told.diagnosis, told.first_divergence) == ("SIGN_FLIPPED", None)
 
 
-def test_calls_are_found_through_helpers_and_later_definitions_win() -> None:
+def test_calls_are_found_through_helpers_and_later_definitions_win():
     source = b"""
 def helper(x):
     return impulse(x)
@@ -284,10 +279,7 @@ def impulse(x):
         ("LIMIT, WAYS = -1e-8, (1, 'up')", False),
         ("import numpy as np\nfar = np.inf", False),
         ("known = {}", True),
-        (
-            "table = {1: 2}\ndef known(x):\n    return table[x], len(table), np.sum(table)",
-            False,
-        ),
+        ("table = {1: 2}\ndef known(x):\n    return table[x], len(table), np.sum(table)", False),
         ("table = [1]\ndef known(x):\n    return [2 * y for y in table if y > x]", False),
         ("table = {}\ndef known(x):\n    table[x] = 1", True),
         ("table = []\ndef known(x):\n    table.append(x)", True),
@@ -302,7 +294,7 @@ def impulse(x):
         ("@cache\ndef known(x):\n    return x", True),
     ],
 )
-def test_only_what_can_change_between_two_calls_may_be_remembered(more: str, could: bool) -> None:
+def test_only_what_can_change_between_two_calls_may_be_remembered(more, could):
     source = (
         f"def g(x):\n    return 2 * x\n{more}\ndef f(x):\n    return g(x), LIMIT, WAYS, far, known, draws\n"
     )
@@ -310,7 +302,7 @@ def test_only_what_can_change_between_two_calls_may_be_remembered(more: str, cou
     assert found == (frozenset({"f"}) if could else frozenset())
 
 
-def test_what_is_kept_between_calls_comes_first_and_a_code_of_the_exercise_names_it() -> None:
+def test_what_is_kept_between_calls_comes_first_and_a_code_of_the_exercise_names_it():
     kept = story_of(
         failures("SIGN_FLIPPED", "CHANGED_IN_PLACE"), (Row(("MASS_SWAPPED",), (1.0,)),), WORDS, kept=True
     )
@@ -322,7 +314,7 @@ def test_what_is_kept_between_calls_comes_first_and_a_code_of_the_exercise_names
         assert story_of(some, (), own, kept=seen).diagnosis == own("STALE_CACHE")
 
 
-def test_warm_ups_share_a_table_and_an_exercise_may_have_none(tmp_path: Path) -> None:
+def test_warm_ups_share_a_table_and_an_exercise_may_have_none(tmp_path):
     one, other = tmp_path / "warm-ups" / "one", tmp_path / "warm-ups" / "other"
     assert read_table(one) is None
     (tmp_path / "warm-ups").mkdir()
@@ -339,7 +331,7 @@ def test_warm_ups_share_a_table_and_an_exercise_may_have_none(tmp_path: Path) ->
         "def task():\n    f0\n" + "=".join(f"f{n}" for n in range(14_000)) + "=0\n",
     ],
 )
-def test_a_chain_of_functions_is_followed_in_time_that_grows_with_it(source: str) -> None:
+def test_a_chain_of_functions_is_followed_in_time_that_grows_with_it(source):
     """What each of thousands reaches would be the square of their number, in time and in memory."""
     start = process_time()
     assert calls_between(source.encode(), frozenset({"task"})) == {"task": ()}
@@ -347,27 +339,27 @@ def test_a_chain_of_functions_is_followed_in_time_that_grows_with_it(source: str
     assert process_time() - start < 5.0
 
 
-def test_asking_again_ends_when_its_time_is_used_up_however_often_a_worker_is_loaded() -> None:
+def test_asking_again_ends_when_its_time_is_used_up_however_often_a_worker_is_loaded():
     loaded = []
 
     class Remote:
         used = 0.4 * SEARCH_S  # of CPU time, to be loaded
 
-        def __init__(self) -> None:
+        def __init__(self):
             loaded.append(self)
 
-        def begin_check(self, task: str, patience: float) -> None:
+        def begin_check(self, task, patience):
             assert patience == pytest.approx(max(SEARCH_S - len(loaded) * Remote.used, 0.0))
             self.used = 0.0
 
-        def call(self, *args: object) -> None:
+        def call(self, *args):
             raise StudentFailure("error", type="ValueError")
 
-        def close(self) -> None:
+        def close(self):
             pass
 
     heard = [Heard("call", ("f", 1.0), 2.0)]
-    with Again(Remote) as again:  # type: ignore[arg-type]
+    with Again(Remote) as again:
         for task in "fghijk":
             assert not again.depends_on_the_past(heard, task, 100.0)
     assert len(loaded) == 3

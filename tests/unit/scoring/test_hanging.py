@@ -1,9 +1,6 @@
 """What a student sees at home alone: the line that hangs, soon, and what the file prints."""
 
-from __future__ import annotations
-
 import signal
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -17,8 +14,6 @@ from course.isolation.session import Connection
 from course.isolation.spawn import spawner
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.remote import RemoteSubmission
-from course.scoring.verdict import CheckResult
 from tests.contracts.boundary.levels import require_level
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGUSR1"), reason="a worker cannot be asked here")
@@ -34,13 +29,13 @@ QUICK = 0.02
 
 
 @pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+def quick(monkeypatch):
     assert models.QUICK > QUICK
     monkeypatch.setattr(models, "QUICK", QUICK)
 
 
 @pytest.fixture(scope="module")
-def home() -> Iterator[GradingSession]:
+def home():
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("COURSE_CONTENT", str(MINI))
         catalog = Catalog()
@@ -50,12 +45,12 @@ def home() -> Iterator[GradingSession]:
 
 
 @pytest.fixture
-def deadlines(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+def deadlines(monkeypatch):
     """How long each load and each check may take, in s of CPU time."""
-    made: list[float] = []
+    made = []
 
     class Noted(Deadline):
-        def __init__(self, seconds: float, wall: float | None = None) -> None:
+        def __init__(self, seconds, wall=None):
             made.append(seconds)
             super().__init__(seconds, wall)
 
@@ -63,18 +58,16 @@ def deadlines(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     return made
 
 
-def line_of(source: str, text: str) -> int:
+def line_of(source, text):
     return source.splitlines().index(text) + 1
 
 
-def hung(session: GradingSession, source: str) -> list[CheckResult]:
+def hung(session, source):
     verdict = session.grade(Submission({"doubling.py": source.encode()}))
     return [check for check in verdict.checks if check.status == "timeout"]
 
 
-def test_the_finding_names_the_loop_and_not_what_the_loop_calls(
-    home: GradingSession, deadlines: list[float]
-) -> None:
+def test_the_finding_names_the_loop_and_not_what_the_loop_calls(home, deadlines):
     source = SOLUTION + HELPER + HANGS
     first = hung(home, source)[0]
     assert deadlines[0] == 20 * QUICK, "at home a file may load for as long as a quick check may run"
@@ -83,12 +76,12 @@ def test_the_finding_names_the_loop_and_not_what_the_loop_calls(
     assert (first.diagnosis, first.actual) == ("TIMEOUT", None)
 
 
-def test_what_sleeps_is_named_by_its_line(home: GradingSession) -> None:
+def test_what_sleeps_is_named_by_its_line(home):
     source = SOLUTION + "\ndef double(x):\n    import time\n    time.sleep(1000)\n"
     assert f"on line {line_of(source, '    time.sleep(1000)')} of your file" in hung(home, source)[0].message
 
 
-def test_patience_follows_from_measured_times_and_shrinks_after_the_first(deadlines: list[float]) -> None:
+def test_patience_follows_from_measured_times_and_shrinks_after_the_first(deadlines):
     catalog = Catalog()
     exercise = catalog.exercise("integrators")
     source = b"def explicit_euler_step(accel, t, q, v, h):\n    while True:\n        pass\n"
@@ -100,14 +93,14 @@ def test_patience_follows_from_measured_times_and_shrinks_after_the_first(deadli
     assert spent == [20 * QUICK, 5 * QUICK]
 
 
-def test_a_check_that_takes_its_time_of_a_right_solution_is_waited_for() -> None:
+def test_a_check_that_takes_its_time_of_a_right_solution_is_waited_for():
     exercise = Catalog().exercise("sim-to-real")
     slow = exercise.slow["tune_other_fleets"]
     assert slow > 2 * QUICK
     assert exercise.patience("tune_other_fleets", False) == pytest.approx(20 * slow)
 
 
-def test_a_grading_run_waits_its_time_and_asks_nothing(deadlines: list[float]) -> None:
+def test_a_grading_run_waits_its_time_and_asks_nothing(deadlines):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("COURSE_CONTENT", str(MINI))
         catalog = Catalog()
@@ -121,7 +114,7 @@ def test_a_grading_run_waits_its_time_and_asks_nothing(deadlines: list[float]) -
     }
 
 
-def test_a_module_that_hangs_while_it_loads_is_named_by_its_line(home: GradingSession) -> None:
+def test_a_module_that_hangs_while_it_loads_is_named_by_its_line(home):
     error = home.grade(Submission({"doubling.py": b"x = 1\nwhile x:\n    x += 1\n"})).error
     assert error.code == "import_timeout"
     assert error.message.startswith("doubling.py, line 2: ")
@@ -129,7 +122,7 @@ def test_a_module_that_hangs_while_it_loads_is_named_by_its_line(home: GradingSe
 
 
 @pytest.mark.parametrize("level", list(Level))
-def test_every_level_can_be_asked(level: Level) -> None:
+def test_every_level_can_be_asked(level):
     require_level(level)
     made = spawner(level, ("numpy",))
     source = b"def f():\n    while True:\n        pass\n"
@@ -151,21 +144,21 @@ def test_every_level_can_be_asked(level: Level) -> None:
         "import os; os.write(3, b'\\x06\\x00\\x00\\x00\\x15' + b'\\xff' * 5)",
     ],
 )
-def test_a_worker_that_tells_nothing_true_is_a_timeout_all_the_same(home: GradingSession, code: str) -> None:
+def test_a_worker_that_tells_nothing_true_is_a_timeout_all_the_same(home, code):
     source = SOLUTION + f"\ndef double(x):\n    {code}\n    while True:\n        pass\n"
     verdict = home.grade(Submission({"doubling.py": source.encode()}))
     assert {check.status for check in verdict.checks if check.task == "double"} <= {"timeout", "crash"}
     assert all("line 9" not in check.message for check in verdict.checks)
 
 
-def test_times_are_written_in_tenths_and_stay_while_they_are_about_right() -> None:
+def test_times_are_written_in_tenths_and_stay_while_they_are_about_right():
     assert due({}, {"quick": 0.02, "slow": 0.31}) == {"slow": 0.4}
     assert due({"slow": 0.4}, {"slow": 0.17}) == {"slow": 0.4}
     assert due({"slow": 0.4}, {"slow": 0.41}) == {"slow": 0.5}
     assert due({"slow": 0.4, "gone": 0.2}, {"slow": 0.01}) == {}
 
 
-def test_prints_while_loading_and_in_checks_that_pass_are_kept(home: GradingSession) -> None:
+def test_prints_while_loading_and_in_checks_that_pass_are_kept(home):
     prints = "\n_old = double\ndef double(x):\n    print(x)\n    return _old(x)\nprint('loaded')\n"
     verdict = home.grade(Submission({"doubling.py": (SOLUTION + prints).encode()}))
     assert (verdict.all_pass, home.printed) == (True, "loaded\n")
@@ -176,7 +169,7 @@ def test_prints_while_loading_and_in_checks_that_pass_are_kept(home: GradingSess
     assert home.printed == ""
 
 
-def test_a_worker_that_starts_again_prints_what_loading_prints_once(home: GradingSession) -> None:
+def test_a_worker_that_starts_again_prints_what_loading_prints_once(home):
     source = SOLUTION + "\ndef double(x):\n    import os\n    os._exit(1)\nprint('loaded')\n"
     verdict = home.grade(Submission({"doubling.py": source.encode()}))
     assert home.printed == "loaded\n"
@@ -186,14 +179,14 @@ def test_a_worker_that_starts_again_prints_what_loading_prints_once(home: Gradin
     ]
 
 
-def test_what_is_said_of_a_file_is_of_its_first_loading(home: GradingSession) -> None:
+def test_what_is_said_of_a_file_is_of_its_first_loading(home):
     """By the second its code has received inputs, and might put them into the words."""
     clock = (
         "import os, time\n\ndef made():\n    raise ValueError(time.monotonic_ns())\n\n"
         "other = made()\n\ndef double(x):\n    os._exit(3)\n"
     )
 
-    def words(remote: RemoteSubmission) -> list[str]:
+    def words(remote):
         said = []
         for name in ("other", "double", "other"):
             with pytest.raises(StudentFailure) as caught:

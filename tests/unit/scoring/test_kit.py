@@ -1,7 +1,5 @@
 """The kit: what a student may return becomes a value or a finding, never an exception of ours."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,9 +1,6 @@
 """What a wrong answer has in common with the right one, and what a function's own text shows."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -72,9 +69,7 @@ PLACES = Places(module="work.py")
         ([-1.5, 1.9], [-1.5, 0.1], {"mb": math.inf}, "Only the second of these numbers is wrong."),
     ],
 )
-def test_an_answer_is_compared_with_the_right_one_and_with_what_went_in(
-    actual: Any, expected: Any, given: dict[str, Any], said: str
-) -> None:
+def test_an_answer_is_compared_with_the_right_one_and_with_what_went_in(actual, expected, given, said):
     found = likeness(actual, expected, given)
     assert found == said if not said or said.endswith(".") else said in found
 
@@ -92,7 +87,7 @@ def test_an_answer_is_compared_with_the_right_one_and_with_what_went_in(
         ([(True, 2.4), (True, 3.5)], ""),
     ],
 )
-def test_of_one_check_s_results_is_said_what_all_have_in_common(pairs: Any, said: str) -> None:
+def test_of_one_check_s_results_is_said_what_all_have_in_common(pairs, said):
     found = of_cases([(actual, expected, {}) for actual, expected in pairs])
     assert said in found
     assert bool(said) == bool(found)
@@ -105,7 +100,7 @@ def test_of_one_check_s_results_is_said_what_all_have_in_common(pairs: Any, said
         ("return 0.25", "For 1 of 5 inputs it is right."),
     ],
 )
-def test_a_warm_up_says_what_its_results_show(body: str, said: str) -> None:
+def test_a_warm_up_says_what_its_results_show(body, said):
     exercise = Catalog().exercise("worst-drift")
     source = f"""
 def worst_drift(energies):
@@ -158,21 +153,21 @@ def worst_drift(energies):
         ([[1.0], [2.0, 3.0]], [1.0, 2.0], ""),
     ],
 )
-def test_several_numbers_are_compared_with_the_right_ones(actual: Any, expected: Any, said: str) -> None:
+def test_several_numbers_are_compared_with_the_right_ones(actual, expected, said):
     found = likeness(actual, expected)
     assert said in found
     assert bool(said) == bool(found)
 
 
 @pytest.mark.parametrize("size", [400, pytest.param(4000, marks=pytest.mark.soak)])
-def test_what_is_said_of_random_numbers_is_nothing(size: int) -> None:
+def test_what_is_said_of_random_numbers_is_nothing(size):
     drawn = np.random.default_rng(1).uniform(0.1, 10.0, (size, 6))
     said = [likeness(a, e, {"x": x, "list": [y, z]}) for a, e, x, y, z, _ in drawn.tolist()]
     said += [likeness(row[:3], row[3:], {"x": row[0] + 1.0}) for row in drawn.tolist()]
     assert not any(said)
 
 
-def judged(**fields: Any) -> CheckResult:
+def judged(**fields):
     usual = {"status": Status.FAIL, "visibility": Visibility.PUBLIC, "message": "It is wrong."}
     usual |= {"id": "c", "title": "c", "task": "total", "points": 0.0, "max_points": 1.0}
     return CheckResult(**(usual | fields))
@@ -185,7 +180,7 @@ def total(errors):
 """
 
 
-def test_a_fact_is_said_of_a_public_check_without_a_name_and_of_no_other() -> None:
+def test_a_fact_is_said_of_a_public_check_without_a_name_and_of_no_other():
     numbers = {"actual": 4.0, "expected": 2.0}
     told = told_more(judged(**numbers), b"", PLACES)
     assert told.message == "It is wrong. Here your result is twice the right one."
@@ -196,7 +191,7 @@ def test_a_fact_is_said_of_a_public_check_without_a_name_and_of_no_other() -> No
     assert told_more(hidden, b"", PLACES).message == "It is wrong."
 
 
-def test_a_return_that_ends_a_loop_in_its_first_pass_is_named() -> None:
+def test_a_return_that_ends_a_loop_in_its_first_pass_is_named():
     told = told_more(judged(), LOOPS, PLACES)
     assert told.diagnosis == "RETURN_IN_LOOP"
     assert "on line 4 of your file" in told.message
@@ -214,11 +209,11 @@ def test_a_return_that_ends_a_loop_in_its_first_pass_is_named() -> None:
         b"def total(e: not Python",
     ],
 )
-def test_a_return_that_may_belong_where_it_stands_is_not_blamed(code: bytes) -> None:
+def test_a_return_that_may_belong_where_it_stands_is_not_blamed(code):
     assert return_in_a_loop(code, "total", PLACES) is None
 
 
-def test_a_function_that_gives_none_is_told_the_condition_or_the_print_and_not_a_missing_return() -> None:
+def test_a_function_that_gives_none_is_told_the_condition_or_the_print_and_not_a_missing_return():
     bounce = b"def after(v, e):\n    if v < 0:\n        return -e * v\n    return None\n"
     assert "condition on line 2 of your file" in why_none(bounce, "after", PLACES)
     assert "`print`" in why_none(b"def after(v):\n    print(2 * v)\n", "after", PLACES)
@@ -236,11 +231,11 @@ def test_a_function_that_gives_none_is_told_the_condition_or_the_print_and_not_a
     assert "condition" in told_more(nothing, bounce, PLACES).help
 
 
-def _returns_and_ifs(n: int) -> bytes:
+def _returns_and_ifs(n):
     return b"def total(e):\n    return None\n" + n * 20 * b"    return 1\n    if e: 0\n"
 
 
-def _loops_in_loops(n: int) -> bytes:
+def _loops_in_loops(n):
     inside = [b" " * at + b"for x in e:\n" for at in range(1, n + 1)]
     after = [b" " * at + b"return x\n" for at in range(n, 0, -1)]
     deepest = b" " * (n + 1) + n * 200 * b"e;" + b"continue\n"
@@ -251,10 +246,10 @@ def _loops_in_loops(n: int) -> bytes:
 @pytest.mark.parametrize(
     ("look", "text"), [(why_none, _returns_and_ifs), (return_in_a_loop, _loops_in_loops)]
 )
-def test_the_text_of_a_function_is_looked_through_in_time_that_grows_with_it(look: Any, text: Any) -> None:
+def test_the_text_of_a_function_is_looked_through_in_time_that_grows_with_it(look, text):
     """18 kB of such text held the grader, which has no deadline, for 43 s of CPU."""
 
-    def make(n: int) -> Any:
+    def make(n):
         source = text(n)
         names_of(source, "total")  # parsed
         return lambda: look(source, "total", PLACES)
@@ -262,14 +257,14 @@ def test_the_text_of_a_function_is_looked_through_in_time_that_grows_with_it(loo
     assert growth(make, 11) < LIMIT
 
 
-def test_the_call_that_raised_is_shown_with_its_arguments() -> None:
+def test_the_call_that_raised_is_shown_with_its_arguments():
     raised = judged(status=Status.ERROR, diagnosis="RAISED")
     assert names_of(LOOPS, "total") == ("errors",)
     assert told_more(raised, LOOPS, PLACES, ([3.0, 4.0],)).input == {"errors": [3.0, 4.0]}
     assert told_more(judged(visibility=Visibility.HIDDEN), LOOPS, PLACES, ([3.0],)).input is None
 
 
-def test_a_value_of_another_kind_is_told_with_its_input() -> None:
+def test_a_value_of_another_kind_is_told_with_its_input():
     words = {"message": "It is wrong.", "source": "exact", "quantity": "x", "input": {"v": 2.0}}
     calls = (
         lambda: kit.expect_close(None, 1.0, rel=1e-9, **words),
@@ -283,7 +278,7 @@ def test_a_value_of_another_kind_is_told_with_its_input() -> None:
         assert failed.value.finding.input == {"v": 2.0}
 
 
-def test_none_as_the_right_answer_is_shown_and_nothing_said_is_not() -> None:
+def test_none_as_the_right_answer_is_shown_and_nothing_said_is_not():
     with pytest.raises(CheckFailed) as failed:
         kit.expect_equal(5.0, None, message="It is wrong.")
     assert (failed.value.finding.expected, failed.value.finding.actual) == ("None", 5.0)
@@ -324,7 +319,7 @@ def test_none_as_the_right_answer_is_shown_and_nothing_said_is_not() -> None:
     ],
 )
 @pytest.mark.filterwarnings("ignore::SyntaxWarning")
-def test_pythons_commonest_errors_have_their_own_cure(code: str, advice: str) -> None:
+def test_pythons_commonest_errors_have_their_own_cure(code, advice):
     with pytest.raises(Exception) as raised:
         eval(code, {})
     failure = StudentFailure(kind="error", type=type(raised.value).__name__, message=str(raised.value))
@@ -341,7 +336,7 @@ def test_pythons_commonest_errors_have_their_own_cure(code: str, advice: str) ->
         ("a = (2", "the one above"),
     ],
 )
-def test_a_line_that_python_cannot_read_has_the_advice_that_fits_it(line: str, advice: str) -> None:
+def test_a_line_that_python_cannot_read_has_the_advice_that_fits_it(line, advice):
     with pytest.raises(SyntaxError) as raised:
         compile(line, "", "exec")
     why = StudentFailure("error", type="SyntaxError", message=raised.value.msg, bases=("SyntaxError",))
@@ -350,7 +345,7 @@ def test_a_line_that_python_cannot_read_has_the_advice_that_fits_it(line: str, a
     assert advice in finding_of(failure).help
 
 
-def test_of_an_exception_in_several_lines_the_first_is_repeated_where_the_advice_is_known() -> None:
+def test_of_an_exception_in_several_lines_the_first_is_repeated_where_the_advice_is_known():
     lines = "module 'numpy' has no attribute 'float'.\n`np.float` was a deprecated alias for `float`."
     finding = finding_of(StudentFailure("error", type="AttributeError", message=lines), shown=True)
     assert finding.message == "Your code raised AttributeError: module 'numpy' has no attribute 'float'."

@@ -1,17 +1,11 @@
 """One function, one story: what a student of ``collisions`` reads, at home and in a grading run."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-from typing import Any
-
 import pytest
 
 from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()
 EXERCISE = CATALOG.exercise("collisions")
@@ -19,23 +13,23 @@ SOLUTION = solution_path(CATALOG, EXERCISE).read_text("utf-8")
 
 
 @pytest.fixture(scope="module", params=["public", "full"])
-def session(request: pytest.FixtureRequest) -> Iterator[GradingSession]:
+def session(request):
     with GradingSession(EXERCISE, CATALOG, scope=request.param, terms=Terms(timeout=20.0)) as opened:
         yield opened
 
 
-def failed(session: GradingSession, more: str) -> dict[str, list[CheckResult]]:
+def failed(session, more):
     """The failed checks of the solution with something put after it, by task."""
     verdict = session.grade(Submission({EXERCISE.module: (SOLUTION + more).encode()}))
     assert verdict.state == "graded", verdict.error
-    found: dict[str, list[CheckResult]] = {}
+    found = {}
     for check in verdict.checks:
         if check.status != "pass":
             found.setdefault(check.task, []).append(check)
     return found
 
 
-def codes(checks: list[CheckResult]) -> set[Any]:
+def codes(checks):
     return {check.diagnosis for check in checks}
 
 
@@ -85,15 +79,13 @@ def resolve(ma, mb, va, vb, normal, restitution):
 
 
 @pytest.mark.parametrize("mistake", TOLD)
-def test_one_mistake_is_told_the_same_by_every_check_that_it_fails(
-    session: GradingSession, mistake: str
-) -> None:
+def test_one_mistake_is_told_the_same_by_every_check_that_it_fails(session, mistake):
     task, code, source = TOLD[mistake]
     found = failed(session, source)
     assert {name: codes(checks) for name, checks in found.items()} == {task: {code}}
 
 
-def test_two_mistakes_at_once_are_both_told(session: GradingSession) -> None:
+def test_two_mistakes_at_once_are_both_told(session):
     impulse = """
 def impulse_1d(ma, mb, va, vb, restitution):
     return -(1 + restitution**2) * max(va - vb, 0.0) / (1 / ma + 1 / mb)
@@ -113,9 +105,7 @@ def _impulse(ma, mb, closing, restitution):
 """
 
 
-def test_the_textbooks_reduced_mass_costs_the_walls_only_and_what_calls_it_is_told_to_wait(
-    session: GradingSession,
-) -> None:
+def test_the_textbooks_reduced_mass_costs_the_walls_only_and_what_calls_it_is_told_to_wait(session):
     found = failed(session, REDUCED_MASS)
     assert codes(found["impulse_1d"]) == {"INFINITE_MASS_NAN"}
     assert all(
@@ -126,7 +116,7 @@ def test_the_textbooks_reduced_mass_costs_the_walls_only_and_what_calls_it_is_to
         assert "`resolve` calls your `impulse_1d`, which is wrong: fix that first." in check.message
 
 
-def test_of_two_wrong_functions_that_one_calls_both_are_told_first(session: GradingSession) -> None:
+def test_of_two_wrong_functions_that_one_calls_both_are_told_first(session):
     """An rmse of its own slip was once laid to the coverage, which came first in the alphabet."""
     both = """
 def detect_sphere_plane(x, r, point, normal):
@@ -150,7 +140,7 @@ def resolve(ma, mb, va, vb, normal, restitution):
         assert calls in check.message
 
 
-def test_numbers_of_its_own_are_nothing_that_is_kept(session: GradingSession) -> None:
+def test_numbers_of_its_own_are_nothing_that_is_kept(session):
     found = failed(
         session,
         "\n_draws = np.random.default_rng()\n"
@@ -159,7 +149,7 @@ def test_numbers_of_its_own_are_nothing_that_is_kept(session: GradingSession) ->
     assert "STATE_KEPT" not in codes(found["impulse_1d"])
 
 
-def test_calls_that_share_a_generator_are_asked_again_with_the_numbers_they_had() -> None:
+def test_calls_that_share_a_generator_are_asked_again_with_the_numbers_they_had():
     twin = CATALOG.exercise("digital-twin")
     source = (
         solution_path(CATALOG, twin).read_text("utf-8")

@@ -1,9 +1,6 @@
 """What is kept of a verdict, what of it a student may read, and its values as a person reads them."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import msgspec
 import pytest
@@ -29,8 +26,8 @@ from course.scoring.verdict import (
 )
 
 
-def _check(**fields: Any) -> CheckResult:
-    given: dict[str, Any] = {
+def _check(**fields):
+    given = {
         "id": "a", "title": "It is so", "task": "integrate", "status": Status.FAIL, "points": 0.0,
         "max_points": 1.0, "visibility": Visibility.HIDDEN, "message": "It is not.", "help": "Do.",
         "diagnosis": "NOT_SO", "duration_ms": 123.4, "actual": 5.0, "quantity": "slip", "stdout": "printed",
@@ -39,7 +36,7 @@ def _check(**fields: Any) -> CheckResult:
     return CheckResult(**{**given, **fields})
 
 
-def _verdict(*checks: CheckResult) -> Verdict:
+def _verdict(*checks):
     return Verdict(
         exercise="e",
         scope="full",
@@ -52,7 +49,7 @@ def _verdict(*checks: CheckResult) -> Verdict:
     )
 
 
-def test_a_hidden_check_that_looked_keeps_its_words_and_nothing_else() -> None:
+def test_a_hidden_check_that_looked_keeps_its_words_and_nothing_else():
     seen = for_student(_check())
     assert (seen.status, seen.message, seen.help, seen.diagnosis) == ("fail", "It is not.", "Do.", "NOT_SO")
     assert (seen.actual, seen.stdout, seen.traceback, seen.duration_ms) == (None, None, None, 0.0)
@@ -77,9 +74,7 @@ def test_a_hidden_check_that_looked_keeps_its_words_and_nothing_else() -> None:
         (Status.FAIL, "RETURNS_NOTHING", "OTHER_FORM"),
     ],
 )
-def test_without_a_value_one_of_five_things_is_said_of_a_hidden_check(
-    status: Status, said: str, told: str
-) -> None:
+def test_without_a_value_one_of_five_things_is_said_of_a_hidden_check(status, said, told):
     results = [
         for_student(
             _check(status=status, diagnosis=said, message=f"ValueError on line {line}.", help=str(line))
@@ -91,7 +86,7 @@ def test_without_a_value_one_of_five_things_is_said_of_a_hidden_check(
     assert "`integrate`" in results[0].message
 
 
-def test_a_function_that_is_not_there_is_told_as_such() -> None:
+def test_a_function_that_is_not_there_is_told_as_such():
     """It was known before any input was."""
     missing = _check(
         status=Status.ERROR, diagnosis="MISSING_FUNCTION", message="Your file has no function `f`."
@@ -99,7 +94,7 @@ def test_a_function_that_is_not_there_is_told_as_such() -> None:
     assert for_student(missing).message == missing.message
 
 
-def test_a_verdict_has_its_bound_whatever_is_in_it() -> None:
+def test_a_verdict_has_its_bound_whatever_is_in_it():
     long = {"stdout": "\U0001f600" * 4000, "traceback": "\\" * 9000, "actual": ["x" * 200] * 20}
     small, large = _verdict(_check()), _verdict(*[_check(**long)] * 40)
     assert bounded(small) is small
@@ -171,15 +166,13 @@ def test_a_tolerance_says_how_much_unless_it_is_only_for_rounding(tolerance, uni
     assert format_tolerance(tolerance, units) == text
 
 
-def test_one_point_is_singular() -> None:
+def test_one_point_is_singular():
     assert [in_points(value) for value in (1.0, 2, 0, 0.5, 1.004)] == [
         "1 point", "2 points", "0 points", "0.5 points", "1 point",
     ]  # fmt: skip
 
 
-def compared(
-    actual: Any, expected: Any, tolerance: Tolerance | None = None, units: str = "", quantity: str = ""
-) -> dict[str, str]:
+def compared(actual, expected, tolerance=None, units="", quantity=""):
     """The numbers of a failed check by their labels."""
     check = _check(actual=actual, expected=expected, tolerance=tolerance, units=units, quantity=quantity)
     return dict(numbers_of(check))

@@ -1,7 +1,5 @@
 """The Python and NumPy at home, and those that grade: what only one can read is told before it costs."""
 
-from __future__ import annotations
-
 import sys
 
 import pytest
@@ -24,7 +22,7 @@ OLD = Graders(
 )
 
 
-def told(source: str, graders: Graders = OLD) -> list[str]:
+def told(source, graders=OLD):
     return notes(source.encode(), PLACES, graders)
 
 
@@ -35,9 +33,7 @@ def told(source: str, graders: Graders = OLD) -> list[str]:
         ("def f():\n    x = 1\n    try:\n        pass\n    except* ValueError:\n        pass\n", 3),
     ],
 )
-def test_a_statement_that_the_older_python_cannot_read_is_named_with_both_versions(
-    source: str, line: int
-) -> None:
+def test_a_statement_that_the_older_python_cannot_read_is_named_with_both_versions(source, line):
     (note,) = told(source)
     here = versions.here()["python"]
     assert note.startswith(
@@ -62,7 +58,7 @@ def test_a_statement_that_the_older_python_cannot_read_is_named_with_both_versio
         ("'#' + f'{a}' + '\\n'", False),
     ],
 )
-def test_a_freer_f_string_is_told_from_one_that_every_python_reads(source: str, is_new: bool) -> None:
+def test_a_freer_f_string_is_told_from_one_that_every_python_reads(source, is_new):
     assert bool(told(f"x = 1\n{source}\n", Graders("3.11.7"))) == is_new
 
 
@@ -80,7 +76,7 @@ def test_a_freer_f_string_is_told_from_one_that_every_python_reads(source: str, 
         ("from graphlib import TopologicalSorter", "has no module `graphlib`."),
     ],
 )
-def test_a_name_that_what_grades_has_not_is_named_with_both_versions(source: str, said: str) -> None:
+def test_a_name_that_what_grades_has_not_is_named_with_both_versions(source, said):
     (note,) = told(source)
     assert said in note
 
@@ -96,9 +92,9 @@ def test_a_name_that_what_grades_has_not_is_named_with_both_versions(source: str
         "\0",
     ],
 )
-def test_what_works_there_as_here_and_what_works_nowhere_is_no_matter_of_versions(source: str) -> None:
+def test_what_works_there_as_here_and_what_works_nowhere_is_no_matter_of_versions(source):
     assert told(source) == []
 
 
-def test_a_checkout_grades_with_itself_and_says_nothing() -> None:
+def test_a_checkout_grades_with_itself_and_says_nothing():
     assert notes(b"import math\nmath.floor(1)", PLACES) == []

@@ -1,13 +1,10 @@
 """ROS 2 bags: what is written is what another reader finds, and what cannot be written says why."""
 
-from __future__ import annotations
-
 import math
 import sqlite3
 import struct
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -33,32 +30,32 @@ ALL = (IMU, SCAN, ODOMETRY, TRUTH)
 class Cdr:
     """Little-endian CDR, read field by field as the specification lays it out."""
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data):
         assert data[:4] == b"\x00\x01\x00\x00"
         self.data, self.at = data[4:], 0
 
-    def take(self, code: str, count: int = 1):
+    def take(self, code, count=1):
         size = struct.calcsize(code)
         self.at += -self.at % size
         values = struct.unpack_from(f"<{count}{code}", self.data, self.at)
         self.at += size * count
         return values if count > 1 else values[0]
 
-    def text(self) -> str:
+    def text(self):
         length = self.take("I")
         raw = self.data[self.at : self.at + length]
         self.at += length
         return raw[:-1].decode()
 
-    def header(self) -> tuple[int, int, str]:
+    def header(self):
         return self.take("i"), self.take("I"), self.text()
 
 
-def of(topic: str, rows: list[tuple[str, str, int, bytes]]) -> list[tuple[str, str, int, bytes]]:
+def of(topic, rows):
     return [row for row in rows if row[0] == topic]
 
 
-def frames(data: bytes) -> list[tuple[tuple[int, int], str, str, tuple[float, ...]]]:
+def frames(data):
     """Stamp, parent, child and x, y, heading of each transform of a TFMessage."""
     cdr, found = Cdr(data), []
     for _ in range(cdr.take("I")):
@@ -70,7 +67,7 @@ def frames(data: bytes) -> list[tuple[tuple[int, int], str, str, tuple[float, ..
     return found
 
 
-def sqlite_messages(bag: Path) -> list[tuple[str, str, int, bytes]]:
+def sqlite_messages(bag):
     with sqlite3.connect(bag / f"{bag.name}.db3") as connection:
         rows = connection.execute(
             "SELECT topics.name, topics.type, messages.timestamp, messages.data FROM messages"

@@ -1,28 +1,26 @@
 """Every number that the simulations are known for, and findings that stay true when something is set."""
 
-from __future__ import annotations
-
 import functools
 import math
 
 import numpy as np
 import pytest
 
-from course.simulations.base import Result, Row, run
+from course.simulations.base import Row, run
 from course.simulations.registry import SIMULATIONS, get
 
 LONGEST_HEADLINE = 74
 
 
 @functools.cache
-def result(line: str) -> Result:
+def result(line):
     """Of a simulation and its settings, as they are typed."""
     name, *pairs = line.split()
     return run(get(name), pairs)
 
 
 @pytest.mark.parametrize("name", SIMULATIONS)
-def test_a_simulation_asks_runs_measures_and_finds(name: str) -> None:
+def test_a_simulation_asks_runs_measures_and_finds(name):
     simulation, out = get(name), result(name)
     assert simulation.id == name
     assert simulation.question.endswith("?")
@@ -35,7 +33,7 @@ def test_a_simulation_asks_runs_measures_and_finds(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SIMULATIONS)
-def test_a_simulation_repeats_bit_for_bit(name: str) -> None:
+def test_a_simulation_repeats_bit_for_bit(name):
     short = ["duration=1"] if get(name).parameter("duration") else []
     one, two = result(" ".join([name, *short])), run(get(name), short)
     assert repr(one.rows) == repr(two.rows)  # some are NaN, which equals nothing
@@ -45,7 +43,7 @@ def test_a_simulation_repeats_bit_for_bit(name: str) -> None:
     )
 
 
-def test_a_row_without_theory_has_no_error_and_neither_has_what_did_not_happen() -> None:
+def test_a_row_without_theory_has_no_error_and_neither_has_what_did_not_happen():
     assert Row("x", 1.0, "m").error is None
     assert Row("x", math.nan, "m", 1.0).error is None
     assert Row("x", math.inf, "m", 1.0).error is None
@@ -113,7 +111,7 @@ KNOWN = {
 
 
 @pytest.mark.parametrize("line", KNOWN)
-def test_numbers_are_the_known_ones(line: str) -> None:
+def test_numbers_are_the_known_ones(line):
     assert {quantity: result(line).row(quantity).simulated for quantity in KNOWN[line]} == KNOWN[line]
 
 
@@ -136,24 +134,24 @@ ALL = slice(None)
         ("environment", slice(3, 6), {"rel": 1e-9}),
     ],
 )
-def test_what_is_measured_agrees_with_theory(line: str, rows: slice, within: dict[str, float]) -> None:
+def test_what_is_measured_agrees_with_theory(line, rows, within):
     for row in result(line).rows[rows]:
         assert row.simulated == pytest.approx(row.theory, **within, nan_ok=True), row
 
 
-def test_semi_implicit_euler_is_low_by_half_a_step_and_explicit_euler_as_much_too_high() -> None:
+def test_semi_implicit_euler_is_low_by_half_a_step_and_explicit_euler_as_much_too_high():
     out = result("free-fall")
     errors = [row.error for row in out.rows if "without ground" in row.quantity]
     assert errors == pytest.approx([0.0981, -0.0981, 0.0, 0.0], abs=1e-10)
     assert out.row("bias of semi-implicit Euler").theory == pytest.approx(-0.0981)
 
 
-def test_the_throw_has_the_apex_and_the_landing_of_theory() -> None:
+def test_the_throw_has_the_apex_and_the_landing_of_theory():
     values = [row.simulated for row in result("projectile").rows]
     assert values == pytest.approx([1.019368, 5.096840, 10.193680, 2.038736, 20.387360], abs=1e-6)
 
 
-def test_air_is_missing_from_the_model_whatever_the_step() -> None:
+def test_air_is_missing_from_the_model_whatever_the_step():
     # Of order 4 with a force that depends on the speed; Verlet is not.
     lines = [f"projectile drag=0.02 method=rk4 step={h}" for h in (0.02, 0.004)]
     coarse, fine = (result(line).rows[4] for line in lines)
@@ -162,7 +160,7 @@ def test_air_is_missing_from_the_model_whatever_the_step() -> None:
     assert fine.error < -4.0
 
 
-def test_the_pair_touches_at_2_25_s_one_metre_apart_and_ends_at_six() -> None:
+def test_the_pair_touches_at_2_25_s_one_metre_apart_and_ends_at_six():
     values = [row.simulated for row in result("collision").rows]
     assert values == pytest.approx([2.25, 1, -2, 2, -6, 6, 0, 4], abs=1e-9)
 
@@ -170,12 +168,12 @@ def test_the_pair_touches_at_2_25_s_one_metre_apart_and_ends_at_six() -> None:
 @pytest.mark.parametrize(
     "settings", ["restitution=0.5 mass1=3", "speed2=1", "restitution=0", "speed1=-1", "mass2=1000"]
 )
-def test_collisions_of_every_kind_agree_with_theory(settings: str) -> None:
+def test_collisions_of_every_kind_agree_with_theory(settings):
     for row in result(f"collision {settings}").rows:
         assert row.simulated == pytest.approx(row.theory, abs=1e-9, nan_ok=True), row
 
 
-def test_the_two_eulers_are_told_apart() -> None:
+def test_the_two_eulers_are_told_apart():
     out = result("integrators")
     assert abs(out.rows[0].error or 0) == pytest.approx(0.0890, abs=5e-5)
     assert abs(out.rows[1].error or 0) == pytest.approx(0.00553, abs=5e-6)
@@ -191,54 +189,54 @@ def test_the_two_eulers_are_told_apart() -> None:
         (1.01, [7.7e69, 5.8e25, 5.1e23, 1.0]),
     ],
 )
-def test_energy_errors_over_a_hundred_seconds_are_the_known_ones(step: float, expected: list[float]) -> None:
+def test_energy_errors_over_a_hundred_seconds_are_the_known_ones(step, expected):
     duration = round(100 / step) * step
     out = result(f"integrators duration={duration!r} step={step}")
     assert [row.simulated for row in out.rows[4:]] == pytest.approx(expected, rel=0.02)
 
 
-def test_beyond_the_limit_every_energy_error_is_infinite() -> None:
+def test_beyond_the_limit_every_energy_error_is_infinite():
     assert all(row.simulated == math.inf for row in result("integrators omega=1000").rows)
 
 
-def test_a_billionth_of_a_radian_grows_past_one_in_ten_seconds() -> None:
+def test_a_billionth_of_a_radian_grows_past_one_in_ten_seconds():
     out = result("chaos")
     assert out.row("separation passes 1e-3 rad").simulated == pytest.approx(7.3, abs=0.05)
     for line in ("chaos", "chaos step=0.0025 duration=11"):
         assert result(line).row("separation passes 1 rad").simulated == pytest.approx(10.0, abs=0.1)
 
 
-def test_a_pendulum_that_swings_low_is_not_called_chaotic() -> None:
+def test_a_pendulum_that_swings_low_is_not_called_chaotic():
     out = result("chaos angle1_deg=10 angle2_deg=10 duration=10")
     assert math.isnan(out.row("separation passes 1 rad").simulated)
     assert "still close" in out.headline
 
 
-def test_averages_agree_where_paths_no_longer_do() -> None:
+def test_averages_agree_where_paths_no_longer_do():
     means = [row.simulated for row in result("chaos").rows if row.quantity.startswith("mean energy")]
     assert means[0] == pytest.approx(means[1], rel=0.03)
 
 
 @pytest.mark.parametrize("step", [0.01, 0.001])
-def test_a_correction_in_the_velocity_gives_an_elastic_ball_the_energy_of_the_formula(step: float) -> None:
+def test_a_correction_in_the_velocity_gives_an_elastic_ball_the_energy_of_the_formula(step):
     # (1 + ERP u)² - 1 with u even from 0 to 1 is ERP + ERP²/3 on average, whatever the step.
     gained = result(f"contact-models step={step}").row("energy kept at e = 1, ERP in the velocity")
     assert gained.simulated - 1 == pytest.approx(0.2 + 0.04 / 3, rel=0.06)
 
 
 @pytest.mark.parametrize("work", [2, 7, 16, 60])
-def test_any_amount_of_work_is_split_into_at_most_six_ways(work: int) -> None:
+def test_any_amount_of_work_is_split_into_at_most_six_ways(work):
     rows = result(f"substeps work={work} duration=0.5 frame=0.025").rows
     assert 2 <= len(rows) <= 6
     assert f"{work} substeps" in rows[-1].quantity
 
 
-def test_the_same_work_in_smaller_steps_stretches_a_chain_less_and_less() -> None:
+def test_the_same_work_in_smaller_steps_stretches_a_chain_less_and_less():
     stretches = [row.simulated for row in result("substeps").rows]
     assert stretches == sorted(stretches, reverse=True)
 
 
-def test_a_sliding_block_stops_half_a_step_at_the_starting_speed_too_early() -> None:
+def test_a_sliding_block_stops_half_a_step_at_the_starting_speed_too_early():
     for row in result("environment").rows[:3]:
         assert row.error == pytest.approx(-2.0 * 0.01 / 2, rel=0.01)
 
@@ -280,7 +278,7 @@ def test_a_sliding_block_stops_half_a_step_at_the_starting_speed_too_early() -> 
         ("chaos nudge=1 duration=5", "passes 0.001 rad at the start"),
     ],
 )
-def test_the_finding_says_what_these_settings_did(line: str, words: str) -> None:
+def test_the_finding_says_what_these_settings_did(line, words):
     assert words in result(line).finding
 
 
@@ -294,10 +292,10 @@ def test_the_finding_says_what_these_settings_did(line: str, words: str) -> None
         ("contact-models restitution=1", "as theory says"),
     ],
 )
-def test_the_headline_says_what_came_of_it(line: str, words: str) -> None:
+def test_the_headline_says_what_came_of_it(line, words):
     assert words in result(line).headline
 
 
 @pytest.mark.parametrize("line", ["projectile method=explicit_euler", "projectile drag=0.1 speed_x=0"])
-def test_a_headline_does_not_call_on_a_theory_that_does_not_bear_it_out(line: str) -> None:
+def test_a_headline_does_not_call_on_a_theory_that_does_not_bear_it_out(line):
     assert "as theory says" not in result(line).headline

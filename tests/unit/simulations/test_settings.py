@@ -1,7 +1,5 @@
 """What --set takes and what it refuses, each refusal with its place and its fix."""
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 
@@ -14,13 +12,13 @@ from course.simulations.base import describe, parse, run
 from course.simulations.registry import SIMULATIONS, get
 
 
-def refused(name: str, *pairs: str) -> UsageError:
+def refused(name, *pairs):
     with pytest.raises(UsageError) as caught:
         run(get(name), pairs)
     return caught.value
 
 
-def test_values_are_read_with_units_fractions_and_spaces() -> None:
+def test_values_are_read_with_units_fractions_and_spaces():
     fall = get("free-fall")
     assert parse(fall, ["step=1/240"])["step"] == 1 / 240
     assert parse(fall, ["height = 3 m", "gravity=1.62m/s²"]) | {} == {
@@ -31,11 +29,11 @@ def test_values_are_read_with_units_fractions_and_spaces() -> None:
 
 
 @given(st.floats(0.01, 1000))
-def test_every_number_comes_back_as_it_was_written(value: float) -> None:
+def test_every_number_comes_back_as_it_was_written(value):
     assert parse(get("free-fall"), [f"gravity={value!r}"])["gravity"] == value
 
 
-def test_an_unknown_key_is_answered_with_all_that_are_known_their_units_ranges_and_defaults() -> None:
+def test_an_unknown_key_is_answered_with_all_that_are_known_their_units_ranges_and_defaults():
     error = refused("free-fall", "hight=3")
     assert error.message == "--set hight=3: free-fall has no parameter 'hight'."
     assert "height (m, above 0 to 100000, default 10): where the ball starts" in error.help
@@ -60,7 +58,7 @@ def test_an_unknown_key_is_answered_with_all_that_are_known_their_units_ranges_a
         ("collision", "restitution=1m", "restitution has no unit, not in m"),
     ],
 )
-def test_a_value_that_cannot_be_used_is_named_with_its_place(name: str, pair: str, words: str) -> None:
+def test_a_value_that_cannot_be_used_is_named_with_its_place(name, pair, words):
     error = refused(name, pair)
     assert error.exit_code == 2
     assert error.message.startswith(f"--set {pair}: ")
@@ -68,11 +66,11 @@ def test_a_value_that_cannot_be_used_is_named_with_its_place(name: str, pair: st
     assert error.help
 
 
-def test_a_key_set_twice_is_refused() -> None:
+def test_a_key_set_twice_is_refused():
     assert "step is set twice" in refused("free-fall", "step=0.01", "step=0.02").message
 
 
-def test_a_step_that_does_not_divide_the_duration_names_both_and_what_would_do() -> None:
+def test_a_step_that_does_not_divide_the_duration_names_both_and_what_would_do():
     error = refused("free-fall", "duration=5", "step=0.3")
     assert error.message.startswith(
         "--set duration=5 and --set step=0.3: A step of 0.3 s does not divide 5 s"
@@ -81,7 +79,7 @@ def test_a_step_that_does_not_divide_the_duration_names_both_and_what_would_do()
     assert run(get("free-fall"), ["duration=5", "step=5/17"]).settings["step"] == 5 / 17
 
 
-def test_more_steps_than_anyone_waits_for_are_refused() -> None:
+def test_more_steps_than_anyone_waits_for_are_refused():
     error = refused("free-fall", "duration=1000", "step=1e-5")
     assert "100,000,000 steps; at most 200,000" in error.message
     assert "0.005 s or more" in error.help
@@ -106,7 +104,7 @@ def test_more_steps_than_anyone_waits_for_are_refused() -> None:
         ("chaos", ["angle1_deg=0", "angle2_deg=0"], "hang straight down"),
     ],
 )
-def test_values_that_are_impossible_together_are_said(name: str, pairs: list[str], words: str) -> None:
+def test_values_that_are_impossible_together_are_said(name, pairs, words):
     error = refused(name, *pairs)
     assert words in error.message
     assert f"{name} knows:" in error.help
@@ -114,7 +112,7 @@ def test_values_that_are_impossible_together_are_said(name: str, pairs: list[str
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", SIMULATIONS)
-def test_at_the_ends_of_its_ranges_a_simulation_runs_or_says_what_does_not_fit(name, monkeypatch) -> None:
+def test_at_the_ends_of_its_ranges_a_simulation_runs_or_says_what_does_not_fit(name, monkeypatch):
     """Each parameter, and each two, at either end; warnings are errors."""
     monkeypatch.setattr("course.simulations.base.MAX_STEPS", 2000)
     lows = {"step": 1e-3} | {p.name: 1e-6 for p in get(name).parameters if p.above}
@@ -129,7 +127,7 @@ def test_at_the_ends_of_its_ranges_a_simulation_runs_or_says_what_does_not_fit(n
 
 
 @pytest.mark.parametrize("name", SIMULATIONS)
-def test_every_default_lies_in_its_own_range_and_is_described(name: str) -> None:
+def test_every_default_lies_in_its_own_range_and_is_described(name):
     simulation = get(name)
     again = [
         f"{p.name}={p.default!r}" if not p.choices else f"{p.name}={p.default}" for p in simulation.parameters
@@ -138,7 +136,7 @@ def test_every_default_lies_in_its_own_range_and_is_described(name: str) -> None
     assert all(p.name in describe(p) and p.meaning in describe(p) for p in simulation.parameters)
 
 
-def test_an_unknown_simulation_is_answered_with_the_closest() -> None:
+def test_an_unknown_simulation_is_answered_with_the_closest():
     with pytest.raises(NotFoundError, match="no simulation 'free_fal'") as caught:
         get("free_fal")
     assert caught.value.exit_code == 5

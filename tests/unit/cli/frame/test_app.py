@@ -136,7 +136,7 @@ def failing(course, monkeypatch):
     """Make ``course doctor`` end by raising something."""
 
     def arrange(error):
-        def doctor_that_fails() -> int:
+        def doctor_that_fails():
             """Say what works on this machine."""
             raise error
 
@@ -182,7 +182,7 @@ def test_ctrl_c_exits_130_and_is_told_in_one_word(failing):
 
 
 def test_what_a_library_prints_does_not_join_the_object(course, monkeypatch):
-    def noisy() -> int:
+    def noisy():
         """Say what works on this machine."""
         print("noise")
         return 0

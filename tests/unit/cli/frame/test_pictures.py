@@ -16,8 +16,7 @@ from course.figures.plots import draw, render
 from course.figures.terminal import in_cells
 
 PLOT = Plot(
-    title="A line",
-    panels=(Panel("time / s", "height / m", (Series("", [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]),)),),
+    title="A line", panels=(Panel("time / s", "height / m", (Series("", [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]),)),)
 )
 
 
@@ -193,7 +192,7 @@ def test_a_report_is_drawn_on_a_terminal_and_described_besides(course, workspace
     ],
     ids=["between words", "where it must", "letters of two columns", "as wide as the window", "further in"],
 )
-def test_a_line_breaks_between_words_where_it_can(source: str, width: int, rows: list[str]) -> None:
+def test_a_line_breaks_between_words_where_it_can(source, width, rows):
     console = Console(width=width, file=io.StringIO())
     console.print(Code(source))
     assert console.file.getvalue().splitlines() == rows

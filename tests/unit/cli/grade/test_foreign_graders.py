@@ -2,7 +2,6 @@
 
 import json
 import shutil
-from pathlib import Path
 
 import pytest
 
@@ -21,9 +20,9 @@ WAYS = {
 
 
 @pytest.fixture
-def ran(course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def ran(course, tmp_path, monkeypatch):
     """A gradebook from elsewhere: its graders were others, and nothing here knows them. What they grade."""
-    graded: list[str] = []
+    graded = []
 
     def noting(entries, terms, graders):
         for done in right(entries, terms):
@@ -49,7 +48,7 @@ def ran(course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 @pytest.mark.parametrize("words", WAYS.values(), ids=WAYS)
-def test_somebody_elses_graders_run_where_nobody_can_be_asked_only_with_yes(course, ran, words) -> None:
+def test_somebody_elses_graders_run_where_nobody_can_be_asked_only_with_yes(course, ran, words):
     refused = course(*words, "--json")
     error = json.loads(refused.out)["error"]
     assert (refused.code, error["code"], ran) == (2, "foreign_graders", [])
@@ -64,8 +63,8 @@ def test_somebody_elses_graders_run_where_nobody_can_be_asked_only_with_yes(cour
 
 
 @pytest.mark.parametrize("words", WAYS.values(), ids=WAYS)
-def test_a_person_at_a_terminal_is_asked(course, ran, words, monkeypatch) -> None:
-    asked: list[str] = []
+def test_a_person_at_a_terminal_is_asked(course, ran, words, monkeypatch):
+    asked = []
     monkeypatch.setattr(Console, "interactive", property(lambda self: True))
     monkeypatch.setattr(Console, "confirm", lambda _, question: asked.append(question) or len(asked) > 1)
     for times, agreed in ((1, False), (2, True)):
@@ -78,8 +77,8 @@ def test_a_person_at_a_terminal_is_asked(course, ran, words, monkeypatch) -> Non
 
 @pytest.mark.parametrize("words", WAYS.values(), ids=WAYS)
 def test_nobody_is_asked_about_graders_that_are_here_too_or_began_a_run_here(
-    course, ran, words, tmp_path: Path, monkeypatch
-) -> None:
+    course, ran, words, tmp_path, monkeypatch
+):
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "elsewhere"))
     assert course(*words).code in {0, 6}  # edited since, but this checkout began the run
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "empty"))
@@ -88,7 +87,7 @@ def test_nobody_is_asked_about_graders_that_are_here_too_or_began_a_run_here(
     assert course(*words).code in {0, 6}  # nothing is known of it, but it is this checkout's to the letter
 
 
-def test_a_file_more_in_the_gradebooks_graders_makes_them_somebody_elses(course, ran, tmp_path: Path) -> None:
+def test_a_file_more_in_the_gradebooks_graders_makes_them_somebody_elses(course, ran, tmp_path):
     checks = tmp_path / "content" / "graders" / "doubling" / "checks.py"
     checks.write_text(checks.read_text().removesuffix("# theirs were others\n"))
     (tmp_path / "content" / "graders" / "doubling" / "late.py").write_text("")

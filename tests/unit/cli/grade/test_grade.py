@@ -3,8 +3,6 @@
 import json
 import os
 import re
-import subprocess
-from pathlib import Path
 
 import pytest
 
@@ -15,12 +13,12 @@ from tests.unit.grading.made import read_csv, zipped
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 
 
-def course(*arguments: object) -> subprocess.CompletedProcess[str]:
+def course(*arguments):
     return in_process(*arguments, env={**os.environ, "COURSE_CONTENT": str(MINI_COURSE)})
 
 
 @pytest.fixture(scope="module")
-def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def graded(tmp_path_factory):
     """A run over one right, one wrong and one broken submission."""
     folder = tmp_path_factory.mktemp("grade")
     solution = (MINI_COURSE / "solutions" / "doubling" / "doubling.py").read_bytes()
@@ -38,7 +36,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "out"
 
 
-def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded: Path) -> None:
+def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded):
     assert {path.name for path in graded.iterdir()} == {
         "gradebook.backup-1.sqlite",
         "gradebook.sqlite", "grades.csv", "results.jsonl", "report.html", "students.html", "students.csv",
@@ -52,7 +50,7 @@ def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded: Path) -> None
     }
 
 
-def test_explain_shows_hidden_values_to_the_instructor_or_why_there_is_no_grade(graded: Path) -> None:
+def test_explain_shows_hidden_values_to_the_instructor_or_why_there_is_no_grade(graded):
     done = course("grade", "explain", graded, "=bob", "doubling")
     assert done.returncode == 0, done.stderr
     assert "6 of 10" in done.stdout
@@ -64,7 +62,7 @@ def test_explain_shows_hidden_values_to_the_instructor_or_why_there_is_no_grade(
     assert body["error"]["code"] == "syntax_error"
 
 
-def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(tmp_path: Path) -> None:
+def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(tmp_path):
     place = tmp_path / "class" / "ada" / "error-left"
     place.mkdir(parents=True)
     wrong = "def error_left(coarse, fine, factor, order):\n    return (coarse - fine) / factor**order\n"
@@ -78,7 +76,7 @@ def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(t
     assert "diagnosis: MINUS_ONE_FORGOTTEN" in said
 
 
-def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: Path) -> None:
+def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path):
     """Names of folders and archives, exceptions and values: on the terminal and in what is explained.
 
     A name that reads like a sentence stood in a sentence of ours like a part of it.

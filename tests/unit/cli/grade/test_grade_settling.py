@@ -5,17 +5,13 @@ import io
 import json
 import shutil
 import tarfile
-from collections.abc import Iterable, Iterator
-from pathlib import Path
 
 import msgspec
 import pytest
 
 from course.grading.gradebook.book import Gradebook
-from course.grading.intake.students import Entry
 from course.grading.running import batch
 from course.grading.running.batch import Graded
-from course.scoring.judging.submission import Terms
 from course.scoring.verdict import OURS, Problem, Status
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import check, read_csv, verdict, zipped
@@ -26,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("unpacked")
 SOURCE = "def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 
 
-def _long_tar(size: int) -> bytes:
+def _long_tar(size):
     """So many MB that are no code, in some kB."""
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w:gz") as archive:
@@ -37,7 +33,7 @@ def _long_tar(size: int) -> bytes:
 
 
 @pytest.fixture
-def here(course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def here(course, tmp_path, monkeypatch):
     """A class of three, graded by stand-ins: one right name, one wrong name, one in nobody's sight."""
     monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders: right(entries, terms))
     shutil.copytree(MINI, tmp_path / "content")
@@ -49,11 +45,11 @@ def here(course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def book(here: Path) -> bytes:
+def book(here):
     return (here / "out" / "gradebook.sqlite").read_bytes()
 
 
-def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -> None:
+def test_what_is_unsettled_is_listed_previewed_and_settled(course, here):
     before = book(here)
     listed = course("grade", "assign", "out", "--json").json
     assert listed["schema"] == "course.grade-assign/1"
@@ -97,14 +93,14 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
         assert course("grade", "assign", "out", *words, "--json").json["error"]["code"] == code
 
 
-def test_an_assigned_file_counts_until_another_file_with_the_right_name_arrives(course, here: Path) -> None:
+def test_an_assigned_file_counts_until_another_file_with_the_right_name_arrives(course, here):
     """Ada's own file was there when the instructor chose another: reading it again is no arrival."""
     again = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
 
-    def resumed() -> int:
+    def resumed():
         return int(json.loads(course(*again, "--json").out.splitlines()[-1])["already_graded"])
 
-    def counts() -> str:
+    def counts():
         with Gradebook(here / "out" / "gradebook.sqlite") as book:
             (one,) = book.results("ada", "doubling")
         return one.key.submission_sha256
@@ -135,7 +131,7 @@ def test_an_assigned_file_counts_until_another_file_with_the_right_name_arrives(
     assert counts() == own, "changed back, after another had counted"
 
 
-def test_a_quiz_record_that_cannot_be_read_is_no_missing_quiz(course, here: Path) -> None:
+def test_a_quiz_record_that_cannot_be_read_is_no_missing_quiz(course, here):
     """Beside an exercise that was asked for, too: the student was told that nothing was handed in."""
     shutil.copytree(MINI.parents[2] / "quiz", here / "content" / "quiz", dirs_exist_ok=True)
     (here / "class" / "ada" / "mine.zip").write_bytes(zipped({"submission.json": b"{"}))
@@ -146,7 +142,7 @@ def test_a_quiz_record_that_cannot_be_read_is_no_missing_quiz(course, here: Path
         assert "ungradable" in told, words
 
 
-def test_who_is_called_as_two_are_is_asked_back_and_nobody_s_log_is_refused(course, here: Path) -> None:
+def test_who_is_called_as_two_are_is_asked_back_and_nobody_s_log_is_refused(course, here):
     (here / "roster.csv").write_text("student,name\nada,John Smith\nbob,John Smith\ncy,Cy\n")
     words = ("grade", "run", "class", "--out", "named", "--exercise", "doubling", "--roster", "roster.csv")
     course(*words)
@@ -157,7 +153,7 @@ def test_who_is_called_as_two_are_is_asked_back_and_nobody_s_log_is_refused(cour
         assert course("grade", "log", "named", *about, "--json").code == 5, about
 
 
-def test_what_was_said_of_a_file_stays_when_it_is_graded_again(course, here: Path) -> None:
+def test_what_was_said_of_a_file_stays_when_it_is_graded_again(course, here):
     (here / "class" / "ada" / "more.py").write_text(SOURCE + "# another\n")
     course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
     assert course("grade", "assign", "new", "--accept-names").code == 0
@@ -172,9 +168,7 @@ def test_what_was_said_of_a_file_stays_when_it_is_graded_again(course, here: Pat
         ]
 
 
-def test_a_resumed_run_says_whose_score_became_lower(
-    course, here: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_resumed_run_says_whose_score_became_lower(course, here, monkeypatch):
     worse = verdict(check("shown", Status.FAIL))
     monkeypatch.setattr(batch, "grade_all", lambda entries, *_, **__: [Graded(one, worse) for one in entries])
     (here / "class" / "ada" / "doubling.py").write_text(SOURCE + "# an older one\n")
@@ -186,13 +180,11 @@ def test_a_resumed_run_says_whose_score_became_lower(
     )
 
 
-def test_every_zero_that_stops_an_export_is_listed_with_a_way_to_settle_it(
-    course, here: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_every_zero_that_stops_an_export_is_listed_with_a_way_to_settle_it(course, here, monkeypatch):
     """A syntax error stopped the export, while `grade assign` said that there was nothing to settle."""
     broken = Problem("syntax_error", "doubling.py, line 1: Python cannot read this file.", "Look there.")
 
-    def ada_cannot_be_read(entries: Iterable[Entry], terms: Terms, graders: int) -> Iterator[Graded]:
+    def ada_cannot_be_read(entries, terms, graders):
         hers = (
             (dataclasses.replace(one, problem=broken) if one.student == "ada" else one) for one in entries
         )
@@ -222,7 +214,7 @@ def test_every_zero_that_stops_an_export_is_listed_with_a_way_to_settle_it(
     assert course("grade", "export", "my grades", "--format", "gradescope").code == 0
 
 
-def test_advice_names_the_folder_it_is_about(course, here: Path) -> None:
+def test_advice_names_the_folder_it_is_about(course, here):
     missing = course("grade", "assign", "out", "cy", "nowhere.py", "--reason", "x", "--dry-run", "--json")
     assert missing.json["error"]["help"] == "Name it as `course grade assign out` lists it, or by its path."
     lifted = course("grade", "override", "out", "ada", "doubling", "--lift", "--json")
@@ -235,9 +227,7 @@ def test_advice_names_the_folder_it_is_about(course, here: Path) -> None:
     assert rest in " ".join(saved.out.split())
 
 
-def test_a_file_in_an_archive_that_was_refused_is_named_as_it_lies_in_the_students_folder(
-    course, here: Path
-) -> None:
+def test_a_file_in_an_archive_that_was_refused_is_named_as_it_lies_in_the_students_folder(course, here):
     manifest = json.dumps({"format_version": 1, "files": {"doubling.py": "0" * 64}})
     (here / "class" / "bob" / "hw.py").unlink()
     (here / "class" / "bob" / "w.zip").write_bytes(
@@ -251,7 +241,7 @@ def test_a_file_in_an_archive_that_was_refused_is_named_as_it_lies_in_the_studen
     assert "bob doubling: ungradable -> graded, 10 of 10; from 'w.zip/doubling.py'" in ran.out, ran.err
 
 
-def test_a_student_is_found_by_the_name_that_every_list_shows(course, here: Path) -> None:
+def test_a_student_is_found_by_the_name_that_every_list_shows(course, here):
     (here / "class" / "e\nve").mkdir()
     course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
     assert r"e\nve doubling: no_file" in course("grade", "assign", "new").out
@@ -261,7 +251,7 @@ def test_a_student_is_found_by_the_name_that_every_list_shows(course, here: Path
     assert (given.code, given.json["student"]) == (0, "e\nve")
 
 
-def test_no_file_is_offered_for_a_quiz(course, here: Path) -> None:
+def test_no_file_is_offered_for_a_quiz(course, here):
     shutil.copytree(MINI.parents[2] / "quiz", here / "content" / "quiz", dirs_exist_ok=True)
     (here / "class" / "ada" / "submission.json").write_text("[1")
     course("grade", "run", "class", "--out", "new", "--exercise", "quiz")
@@ -271,7 +261,7 @@ def test_no_file_is_offered_for_a_quiz(course, here: Path) -> None:
     assert "A quiz is graded from its record" in refused.json["error"]["message"]
 
 
-def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) -> None:
+def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here):
     before = book(here)
     ran = course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x", "--dry-run")
     assert "3 of 10 would count" in ran.out
@@ -297,9 +287,7 @@ def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) ->
     )
 
 
-def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(
-    course, here: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(course, here, monkeypatch):
     checks = here / "content" / "graders" / "doubling" / "checks.py"
     checks.write_text(checks.read_text() + "# edited\n")
     words = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
@@ -325,9 +313,7 @@ def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(
     assert course("grade", "explain", "out", "ada", "doubling", "--json").json["score"] == 10.0
 
 
-def test_a_check_that_breaks_on_a_submission_is_told_by_each_command_that_grades(
-    course, here: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_check_that_breaks_on_a_submission_is_told_by_each_command_that_grades(course, here, monkeypatch):
     """Only a run told it: after a regrading a student had lost points, and nothing said by whose fault."""
     odd = msgspec.structs.replace(
         check("shown", Status.FAIL), traceback=f"{OURS}KeyError: 3 (checks.py, line 9)"
@@ -346,7 +332,7 @@ def test_a_check_that_breaks_on_a_submission_is_told_by_each_command_that_grades
         assert json.loads(course(*words, "--json").out.splitlines()[-1])["unjudged"] == [where]
 
 
-def test_a_damaged_gradebook_is_salvaged_into_a_new_folder(course, here: Path) -> None:
+def test_a_damaged_gradebook_is_salvaged_into_a_new_folder(course, here):
     assert course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x").code == 0
     damaged = bytes(4096) + book(here)[4096:]
     (here / "out" / "gradebook.sqlite").write_bytes(damaged)
@@ -370,7 +356,7 @@ def test_a_damaged_gradebook_is_salvaged_into_a_new_folder(course, here: Path) -
     assert not (here / "newer").exists()
 
 
-def test_the_summary_says_what_passes_and_whose_files_there_are(course, here: Path) -> None:
+def test_the_summary_says_what_passes_and_whose_files_there_are(course, here):
     ran = course("grade", "run", "class", "--out", "again", "--exercise", "doubling")
     assert "1 graded, 1 of them pass (pass mark: 7 of 10)." in ran.out
     listed = "lists the files of those that could not be graded"
@@ -384,11 +370,11 @@ def test_the_summary_says_what_passes_and_whose_files_there_are(course, here: Pa
     [("cp1252", "Windows' western code page"), ("utf-16", "UTF-16"), ("utf-32", "UTF-32")],
 )
 def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name_and_named_and_proposed(
-    course, here: Path, monkeypatch: pytest.MonkeyPatch, encoding: str, named: str
-) -> None:
-    graded: list[bytes] = []
+    course, here, monkeypatch, encoding, named
+):
+    graded = []
 
-    def kept(entries: Iterable[Entry], terms: Terms, graders: int) -> Iterator[Graded]:
+    def kept(entries, terms, graders):
         given = list(entries)
         graded.extend(source for entry in given for source in entry.submission.files.values())
         return right(given, terms)
@@ -410,7 +396,7 @@ def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name_and_named_and
     assert "ada doubling: ungradable -> graded, 10 of 10; from 'doubling.py'" in ran.out
 
 
-def test_what_was_decided_before_a_folder_came_stays_with_its_student(course, here: Path) -> None:
+def test_what_was_decided_before_a_folder_came_stays_with_its_student(course, here):
     """Until then a student is called as Canvas' roster has it; the score by hand stayed with that name."""
     sheet = 'Student,ID,SIS User ID,SIS Login ID,Section\n"L, Ada",1,ada,al,A\n"N, Dan",4,dan,dn,A\n'
     (here / "canvas.csv").write_text(sheet, "utf-8")
@@ -438,7 +424,7 @@ def test_what_was_decided_before_a_folder_came_stays_with_its_student(course, he
     )
 
 
-def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(course, here: Path) -> None:
+def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(course, here):
     for name in ("doubling", "halving"):
         shutil.copytree(MINI / "solutions" / name, here / "other" / name)
     ran = course("grade", "run", "other", "--out", "new", "--json")
@@ -457,7 +443,7 @@ _METADATA = "".join(
 
 @pytest.mark.parametrize("layout", ["auto", "gradescope", "folders", "moodle"])
 @pytest.mark.parametrize("name", ["ada", "Ada_11_assignsubmission_file", "assignment_77_export"])
-def test_what_one_student_hands_in_grades_nobody_else(course, here: Path, name: str, layout: str) -> None:
+def test_what_one_student_hands_in_grades_nobody_else(course, here, name, layout):
     """The only entry of a folder was searched for Gradescope's list, and that was believed."""
     for n in range(2):
         (here / "second" / name / f"submission_{n}").mkdir(parents=True)
@@ -484,9 +470,7 @@ def test_what_one_student_hands_in_grades_nobody_else(course, here: Path, name: 
         ({"w.tar.gz": _long_tar(101)}, ["w.tar.gz", "more than 100 MB"]),
     ],
 )  # fmt: skip
-def test_small_archives_that_would_take_minutes_cost_their_student_alone(
-    course, here: Path, files: dict[str, bytes], said: list[str]
-) -> None:
+def test_small_archives_that_would_take_minutes_cost_their_student_alone(course, here, files, said):
     (here / "class" / "bob" / "hw.py").unlink()
     for name, content in files.items():
         (here / "class" / "bob" / name).write_bytes(content)

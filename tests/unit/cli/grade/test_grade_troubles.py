@@ -4,7 +4,6 @@ import contextlib
 import json
 import shutil
 import sqlite3
-from pathlib import Path
 
 import pytest
 
@@ -37,7 +36,7 @@ READING = [
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(tmp_path_factory):
     """A class and its gradebook with what is made from it, written once for all tests."""
     folder = tmp_path_factory.mktemp("made")
     verdicts = {f"student {number:02}": HALF for number in range(30)} | {"ada": RIGHT}
@@ -50,29 +49,29 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def out(made: Path, tmp_path: Path) -> Path:
+def out(made, tmp_path):
     shutil.copytree(made, tmp_path, dirs_exist_ok=True)
     return tmp_path / "out"
 
 
-def newer(path: Path) -> None:
+def newer(path):
     with contextlib.closing(sqlite3.connect(path)) as db:
         db.execute("PRAGMA user_version = 99")
 
 
-def overwritten(path: Path) -> None:
+def overwritten(path):
     size = path.stat().st_size
     with path.open("r+b") as file:
         file.seek(4096)
         file.write(b"X" * (size - 8192))
 
 
-def cut(path: Path) -> None:
+def cut(path):
     with path.open("r+b") as file:
         file.truncate(path.stat().st_size // 2)
 
 
-def other(path: Path) -> None:
+def other(path):
     path.write_bytes(b"something else altogether, and long enough for a page of it " * 100)
 
 
@@ -88,8 +87,8 @@ def other(path: Path) -> None:
     ids=["newer", "overwritten", "cut", "other"],
 )
 def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(
-    course, out: Path, words, spoil, code: int, error: str, sentence: str
-) -> None:
+    course, out, words, spoil, code, error, sentence
+):
     spoil(out / "gradebook.sqlite")
     before = files_in(out.parent)
     ran = course("grade", *words, "--json")
@@ -102,7 +101,7 @@ def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(
 @pytest.mark.parametrize(
     "words", [WRITING[0], WRITING[2], ("explain", "out", "ada", "doubling")], ids=" ".join
 )
-def test_where_only_backups_are_left_every_command_names_salvage(course, out: Path, words) -> None:
+def test_where_only_backups_are_left_every_command_names_salvage(course, out, words):
     path = out / "gradebook.sqlite"
     shutil.copyfile(path, out / "gradebook.backup-1.sqlite")
     for lose in (lambda: path.write_bytes(b""), path.unlink):
@@ -113,7 +112,7 @@ def test_where_only_backups_are_left_every_command_names_salvage(course, out: Pa
 
 
 @pytest.fixture
-def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+def impatient(monkeypatch):
     """A command that waits for a locked gradebook gives up soon."""
     connect = sqlite3.connect
     monkeypatch.setattr(
@@ -123,7 +122,7 @@ def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("impatient")
 @pytest.mark.parametrize("words", WRITING + READING, ids=" ".join)
-def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(course, out: Path, words) -> None:
+def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(course, out, words):
     with Gradebook(out / "gradebook.sqlite", writing=True) as book:
         book.set_meta(seed="7")
         before = files_in(out / "students")
@@ -137,12 +136,10 @@ def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(cour
 
 
 @pytest.mark.usefixtures("impatient")
-def test_the_gradebook_is_held_until_the_last_page_is_written(
-    course, out: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_gradebook_is_held_until_the_last_page_is_written(course, out, monkeypatch):
     refused = []
 
-    def write_pages(*arguments: object) -> object:
+    def write_pages(*arguments):
         refused.append(course("grade", "late", "out", "--clear", "--json").json["error"]["code"])
         return whole(*arguments)
 
@@ -153,10 +150,8 @@ def test_the_gradebook_is_held_until_the_last_page_is_written(
     assert "oral exam" in (out / "report.html").read_text("utf-8")
 
 
-def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
-    course, out: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def write_pages(path: Path, *_: object) -> None:
+def test_pages_that_cannot_be_written_cost_nothing_but_themselves(course, out, monkeypatch):
+    def write_pages(path, *_):
         raise MissingCapabilityError(f"{path} cannot be written.", help="-o", code="cannot_write")
 
     before = files_in(out / "students")
@@ -173,9 +168,7 @@ def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
 
 
 @pytest.mark.parametrize("count", [0, 1])
-def test_an_interrupted_run_ends_its_lines_with_the_reason(
-    course, out: Path, monkeypatch: pytest.MonkeyPatch, count: int
-) -> None:
+def test_an_interrupted_run_ends_its_lines_with_the_reason(course, out, monkeypatch, count):
     shutil.copytree(out.parent / "class" / "ada", out.parent / "class" / "bob")
     stopped = interrupted_after(count)
     monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders=1: stopped(entries, terms))
@@ -189,7 +182,7 @@ def test_an_interrupted_run_ends_its_lines_with_the_reason(
         assert lines[0]["graded_at"] == stored
 
 
-def test_a_class_with_nothing_to_grade_is_told_of_warm_ups_and_of_resuming(course, tmp_path: Path) -> None:
+def test_a_class_with_nothing_to_grade_is_told_of_warm_ups_and_of_resuming(course, tmp_path):
     (tmp_path / "class" / "ada" / "two-walls").mkdir(parents=True)
     (tmp_path / "class" / "ada" / "two-walls" / "two_walls.py").write_text("x = 1\n", "utf-8")
     ran = course("grade", "run", "class", "--out", "out")
@@ -229,7 +222,7 @@ NO_TEXT = "x\udcff"
         (("salvage", "out", "--to", "class/ada/doubling.py/x"), 4),
     ],
 )
-def test_words_that_are_no_text_are_named_and_paths_may_be_any_bytes(course, out: Path, words, code) -> None:
+def test_words_that_are_no_text_are_named_and_paths_may_be_any_bytes(course, out, words, code):
     (out.parent / f"{NO_TEXT}.csv").write_text("student\nada\n", "utf-8")
     if words[:2] == ("run", NO_TEXT):
         shutil.copytree(out.parent / "class", out.parent / NO_TEXT)
@@ -242,7 +235,7 @@ def test_words_that_are_no_text_are_named_and_paths_may_be_any_bytes(course, out
 
 
 @pytest.mark.parametrize("name", [*FORMATS, "gradescope-autograder", "similar"])
-def test_a_folder_is_no_place_for_a_file(course, out: Path, name: str) -> None:
+def test_a_folder_is_no_place_for_a_file(course, out, name):
     (out.parent / "folder.html").mkdir()
     (out.parent / "sheet.csv").write_text(SHEET, "utf-8")
     (out.parent / "keys.csv").write_text("student,canvas_id,moodle_key\nada,1,ada\n", "utf-8")

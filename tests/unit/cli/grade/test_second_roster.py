@@ -37,7 +37,7 @@ CANVAS = """Student,ID,SIS User ID,SIS Login ID,Section,Doubling (4711)
 
 
 @pytest.fixture
-def out(tmp_path: Path) -> Path:
+def out(tmp_path):
     with make_book(tmp_path / "out", {"ada": RIGHT, "bob": RIGHT}) as book:
         at = DUE.timestamp() + 2 * DAY
         book.add_times([SubmittedAt("bob", "doubling", digest("bob"), "gradescope", at)])
@@ -47,7 +47,7 @@ def out(tmp_path: Path) -> Path:
     return tmp_path / "out"
 
 
-def write(folder: Path, name: str, text: str) -> Path:
+def write(folder, name, text):
     (folder / name).parent.mkdir(parents=True, exist_ok=True)
     (folder / name).write_text(text, "utf-8")
     return folder / name
@@ -59,7 +59,7 @@ TO_CANVAS = (
 )  # fmt: skip
 
 
-def test_a_second_roster_takes_nothing_away(course, out: Path) -> None:
+def test_a_second_roster_takes_nothing_away(course, out):
     set_up = ("grade", "late", "out", "--policy", "late.toml", "--roster", "first.csv")
     assert course(*set_up).code == 0
     before = grades(out / "grades.csv")
@@ -76,7 +76,7 @@ def test_a_second_roster_takes_nothing_away(course, out: Path) -> None:
     assert line in (out / "canvas.csv").read_text().splitlines()
 
 
-def test_whose_score_a_roster_changes_is_said_before_it_is_written(course, out: Path) -> None:
+def test_whose_score_a_roster_changes_is_said_before_it_is_written(course, out):
     assert course("grade", "late", "out", "--policy", "late.toml", "--roster", "first.csv").code == 0
     write(out.parent, "next.csv", "student,canvas_id,extension_days\nada,101,\nbob,102,0\n")
     told = (
@@ -99,7 +99,7 @@ def test_whose_score_a_roster_changes_is_said_before_it_is_written(course, out: 
     )  # fmt: skip
 
 
-def test_late_and_a_resumed_run_say_the_same(course, out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_late_and_a_resumed_run_say_the_same(course, out, monkeypatch):
     monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders=1: right(entries, terms))
     assert course("grade", "late", "out", "--policy", "late.toml", "--roster", "first.csv").code == 0
     write(out.parent, "next.csv", "student,extension_days\nada,\nbob,0\n")
@@ -119,7 +119,7 @@ def test_late_and_a_resumed_run_say_the_same(course, out: Path, monkeypatch: pyt
         assert results.person("ada").email == "ada@x.org"
 
 
-def merge(tmp_path: Path, first: Roster, second: str, downloads: dict[str, PlatformIdentity] | None = None):
+def merge(tmp_path, first, second, downloads=None):
     with make_book(tmp_path / str(len(second)), {"ada": RIGHT, "bob": HALF}) as book:
         book.set_students(downloads or {})
         return merged(Results(book, first), read_roster(write(tmp_path, "second.csv", second)))
@@ -150,14 +150,14 @@ ADA = Person("ada", "Ada Lovelace", "ada@x.org", login="ada")
         "who could be two rows inherits from neither", "an id that another row has now does not stay",
     ],
 )  # fmt: skip
-def test_a_row_keeps_what_is_its_own_and_no_more(tmp_path: Path, first, second: str, people) -> None:
+def test_a_row_keeps_what_is_its_own_and_no_more(tmp_path, first, second, people):
     found = merge(tmp_path, Roster(tuple(first)), second)
     assert found.roster.people == tuple(people)
     assert found.dropped == [one.student for one in first if one.student.startswith("x")]
     assert found.roster.columns.get("email", "") == ("email" if any(one.email for one in first) else "")
 
 
-def test_a_policy_finds_a_downloads_student_by_the_name_in_the_first_roster(tmp_path: Path) -> None:
+def test_a_policy_finds_a_downloads_student_by_the_name_in_the_first_roster(tmp_path):
     first = Roster((Person("ada_l", "Ada", canvas_id="101"),))
     downloads = {"ada": PlatformIdentity("canvas", "101", "x")}
     (person,) = merge(tmp_path, first, CANVAS.partition('"Byrne')[0], downloads).roster.people
@@ -173,7 +173,7 @@ Participant 501,Bob Byrne,bob2@x.org,x,,-,
 """
 
 
-def test_a_worksheet_finds_plain_folders_by_address_or_name(course, out: Path) -> None:
+def test_a_worksheet_finds_plain_folders_by_address_or_name(course, out):
     assert course("grade", "late", "out", "--roster", "first.csv").code == 0
     write(out.parent, "sheet.csv", WORKSHEET)
     filled = ("grade", "export", "out", "--format", "moodle-worksheet", "--exercise", "doubling")
@@ -195,14 +195,14 @@ def test_a_worksheet_finds_plain_folders_by_address_or_name(course, out: Path) -
         ("moodle-worksheet", "first.csv has no moodle_key, and Moodle needs it."),
     ],
 )
-def test_a_roster_without_the_column_is_refused_for_that(course, out: Path, name: str, says: str) -> None:
+def test_a_roster_without_the_column_is_refused_for_that(course, out, name, says):
     words = ("grade", "export", "out", "--format", name, "--roster", "first.csv", "--json")
     error = course(*words).json["error"]
     assert (error["code"], error["message"]) == ("unmatched_students", f"{says} Nothing was written.")
     assert "worksheet" in error["help"] or "Canvas' gradebook export" in error["help"]
 
 
-def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out: Path) -> None:
+def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out):
     """Canvas would rescale what it gets: its own file says how many points an assignment has there."""
     text = CANVAS.replace("Doubling (4711)", '"Doubling, first try (4711)"').replace(",,10\n", ",,5\n")
     write(out.parent, "canvas.csv", text)
@@ -226,9 +226,7 @@ def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out: 
         ("-3", "10", "no points"),
     ],
 )  # fmt: skip
-def test_points_are_read_in_every_language_and_said_where_there_are_none(
-    course, out: Path, points: str, score: str, told: str
-) -> None:
+def test_points_are_read_in_every_language_and_said_where_there_are_none(course, out, points, score, told):
     """Source: canvas-lms/lib/gradebook_exporter.rb, ``format_numbers``: two digits, in a user's language."""
     rows = list(csv.reader(CANVAS.replace(",10\n", ",POINTS\n").splitlines()))
     text = "\n".join(";".join(row) for row in rows).replace("POINTS", points)
@@ -240,7 +238,7 @@ def test_points_are_read_in_every_language_and_said_where_there_are_none(
     assert len(ran.out.splitlines()) == 1 + bool(told)
 
 
-def test_whom_canvas_excuses_stays_excused(course, out: Path) -> None:
+def test_whom_canvas_excuses_stays_excused(course, out):
     write(out.parent, "canvas.csv", CANVAS.replace(",bob,A,", ",bob,A,EX"))
     ran = course(*TO_CANVAS, "canvas.csv")
     assert '"bob","A","EX"' in (out / "canvas.csv").read_text(), "an empty cell takes the excuse away"
@@ -250,7 +248,7 @@ def test_whom_canvas_excuses_stays_excused(course, out: Path) -> None:
     assert '"bob","A","10"' in (out / "canvas.csv").read_text()
 
 
-def test_what_canvas_has_and_we_have_not_is_written_back(course, out: Path) -> None:
+def test_what_canvas_has_and_we_have_not_is_written_back(course, out):
     write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", ',gus,A,"7,50"'))
     assert course(*TO_CANVAS, "canvas.csv", "--overwrite").code == 0
     assert '"gus","A","7,50"' in (out / "canvas.csv").read_text()
@@ -265,9 +263,7 @@ def test_what_canvas_has_and_we_have_not_is_written_back(course, out: Path) -> N
     assert "an empty cell takes away the score or the excuse (EX)" in " ".join(ran.out.split())
 
 
-def test_another_assignment_of_moodle_s_is_refused_before_it_doubles_the_class(
-    course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_assignment_of_moodle_s_is_refused_before_it_doubles_the_class(course, tmp_path, monkeypatch):
     monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders=1: right(entries, terms))
     for folder, number in (("first", 52001), ("second", 63007)):
         for at, name in enumerate(("Ada Lovelace", "Bob Byrne")):
@@ -283,20 +279,20 @@ def test_another_assignment_of_moodle_s_is_refused_before_it_doubles_the_class(
     assert course("grade", "run", "first", *run, "--resume").code == 0
 
 
-def test_who_is_not_there_has_no_log(course, out: Path) -> None:
+def test_who_is_not_there_has_no_log(course, out):
     assert course("grade", "log", "out", "nobody").code == 5
     assert course("grade", "log", "out", "ada", "no-such").code == 5
     assert course("grade", "log", "out", "ada", "doubling").code == 0
 
 
-def test_a_roster_from_a_spreadsheet_is_read(tmp_path: Path) -> None:
+def test_a_roster_from_a_spreadsheet_is_read(tmp_path):
     text = "Student\tName\tE-mail\nada\tAda Lovelace\tada@x.org\n"
     (tmp_path / "r.txt").write_bytes(text.replace("E-mail", "EMAIL").encode("utf-16"))
     (person,) = read_roster(tmp_path / "r.txt").people
     assert (person.student, person.name, person.email) == ("ada", "Ada Lovelace", "ada@x.org")
 
 
-def test_a_time_names_a_student_as_a_score_by_hand_does(course, out: Path) -> None:
+def test_a_time_names_a_student_as_a_score_by_hand_does(course, out):
     write(out.parent, "named.csv", "student,name\nada,Ada Lovelace\nbob,Bob Byrne\n")
     write(
         out.parent, "times.csv", "student,exercise,submitted_at\nAda Lovelace,doubling,2031-01-01T00:00:00Z\n"
@@ -307,7 +303,7 @@ def test_a_time_names_a_student_as_a_score_by_hand_does(course, out: Path) -> No
     assert "ada" in {one["student"] for one in ran.json["late"]}
 
 
-def test_a_worksheet_s_numbers_are_not_what_a_student_is_known_by(course, out: Path) -> None:
+def test_a_worksheet_s_numbers_are_not_what_a_student_is_known_by(course, out):
     write(out.parent, "own.csv", "student,name,moodle_key\nada,Ada Lovelace,ada@uni.example\n")
     sheet = (
         "Identifier,Full name,Grade,Maximum Grade,Last modified (grade)\nParticipant 500,Ada Lovelace,,10,-\n"
@@ -321,7 +317,7 @@ def test_a_worksheet_s_numbers_are_not_what_a_student_is_known_by(course, out: P
     assert ",10," in (out / "moodle-worksheet.csv").read_text()
 
 
-def test_the_student_for_tests_stops_no_export(course, tmp_path: Path) -> None:
+def test_the_student_for_tests_stops_no_export(course, tmp_path):
     with make_book(tmp_path / "out", {"lovelaceada_101": RIGHT, "studenttest_999": RIGHT}):
         pass
     write(tmp_path, "canvas.csv", CANVAS + '"Student, Test",999,,x,A,\n')
@@ -333,7 +329,7 @@ def test_the_student_for_tests_stops_no_export(course, tmp_path: Path) -> None:
     assert course(*TO_CANVAS, "canvas.csv").code == 0
 
 
-def test_an_export_goes_to_standard_output_or_a_pipe(out: Path) -> None:
+def test_an_export_goes_to_standard_output_or_a_pipe(out):
     base = [sys.executable, "-m", "course", "grade", "export", str(out)]
     there = in_process("grade", "export", out, "-o", "-").stdout
     rows = csv.DictReader(io.StringIO(there.removeprefix("\ufeff")))
@@ -347,7 +343,7 @@ def test_an_export_goes_to_standard_output_or_a_pipe(out: Path) -> None:
     assert in_process("grade", "export", out, "-o", "-", "--json").returncode == 2
 
 
-def test_a_roster_in_a_western_code_page_and_a_german_worksheet_are_read(course, out: Path) -> None:
+def test_a_roster_in_a_western_code_page_and_a_german_worksheet_are_read(course, out):
     (out.parent / "latin.csv").write_bytes("student,name\nada,Ada Müller\nbob,Bob\n".encode("latin-1"))
     assert course("grade", "export", "out", "--roster", "latin.csv").code == 0
     assert grades(out / "grades.csv")["ada"]["name"] == "Ada Müller"
@@ -367,7 +363,7 @@ def test_a_roster_in_a_western_code_page_and_a_german_worksheet_are_read(course,
     assert ',,"20,00",Nein' in bob
 
 
-def test_a_student_is_called_as_the_roster_calls_her(course, out: Path) -> None:
+def test_a_student_is_called_as_the_roster_calls_her(course, out):
     write(out.parent, "canvas.csv", CANVAS)
     assert course(*TO_CANVAS, "canvas.csv").code == 0
     for name in ("Lovelace, Ada", "ada lovelace", "101", "S1", "ada"):
@@ -386,7 +382,7 @@ def test_a_student_is_called_as_the_roster_calls_her(course, out: Path) -> None:
         "Thursday, {0:%B} {0.day}, {0.year}, {0.hour}:{0:%M}",
     ],
 )
-def test_moodles_worksheet_says_when_work_was_handed_in(course, tmp_path: Path, words: str) -> None:
+def test_moodles_worksheet_says_when_work_was_handed_in(course, tmp_path, words):
     with make_book(tmp_path / "out", {"Ada_101": RIGHT, "Bob_102": RIGHT}):
         pass
     write(tmp_path, "late.toml", POLICY[: POLICY.index("[[extension]]")])

@@ -27,7 +27,7 @@ GOOD = "def double(x):\n    'RIGHT'"
 OTHER = "def doublings(x, n):\n    'RIGHT'"
 
 
-def write_into(path: Path, *texts: str) -> None:
+def write_into(path, *texts):
     """Put functions into the cells of a generated notebook, as somebody who works in Jupyter does."""
     notebook = json.loads(path.read_text("utf-8"))
     places = [c for c in notebook["cells"] if c["metadata"].get("course", {}).get("role") == "solution"]
@@ -39,7 +39,7 @@ def write_into(path: Path, *texts: str) -> None:
 
 
 @pytest.fixture
-def notebook(course, workspace) -> Path:
+def notebook(course, workspace):
     """The exercise's notebook beside its stub, as it is generated."""
     assert course("notebook", "build", "doubling").code == 0
     return workspace / "doubling" / "doubling.ipynb"
@@ -130,7 +130,7 @@ def test_check_finds_the_exercise_by_marks_name_or_functions(course, tmp_path):
     assert (ran.code, ran.json["error"]["code"]) == (3, "no_declared_functions")
 
 
-def handed_in(workspace: Path) -> dict[str, bytes]:
+def handed_in(workspace):
     with zipfile.ZipFile(workspace / "mini-submission.zip") as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
@@ -255,7 +255,7 @@ def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     mine = notebook.read_bytes()
     said = []
 
-    def wait(lab: server.Lab) -> int:
+    def wait(lab):
         contents = lab.address.replace("/lab/tree/", "/api/contents/").replace("/lab?", "/api/contents?")
         for address in (lab.address, contents, contents.partition("?")[0]):
             try:
@@ -298,7 +298,7 @@ def test_a_jupyterlab_that_does_not_start_is_quoted(course, workspace, monkeypat
 WRONG = "def double(x):\n    'wrong'"
 
 
-def attempts(workspace: Path) -> list[dict]:
+def attempts(workspace):
     return [dict(event.data) for event in Workspace.find(workspace).store.events("check")]
 
 

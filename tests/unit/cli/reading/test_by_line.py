@@ -3,8 +3,6 @@
 import io
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import pytest
 
@@ -14,8 +12,7 @@ from course.cli.frame import app
 from course.cli.frame.console import Console, Settings, install
 from course.cli.frame.here import Here
 from course.cli.reading.by_line import LineReader
-from course.cli.reading.lesson import Printer, paginate, printer, sentences
-from course.progress.workspace import Workspace
+from course.cli.reading.lesson import paginate, printer, sentences
 from course.reading.parts import read_script
 from course.reading.record import predictions_of
 from tests.unit.cli.reading.conftest import CATALOG
@@ -29,7 +26,7 @@ ASKED = 1 + next(at for at, page in enumerate(_PAGES) if isinstance(page[-1], Pr
 
 
 @pytest.fixture
-def workspace(mine: Workspace, monkeypatch: pytest.MonkeyPatch) -> Workspace:
+def workspace(mine, monkeypatch):
     monkeypatch.chdir(mine.root)
     return mine
 
@@ -37,37 +34,37 @@ def workspace(mine: Workspace, monkeypatch: pytest.MonkeyPatch) -> Workspace:
 class Typed:
     """A console on which somebody types; what was said and what was asked are kept apart."""
 
-    def __init__(self, answer: Callable[[str], str | None]) -> None:
+    def __init__(self, answer):
         self.out, self.asked = io.StringIO(), list[str]()
         self._answer = answer
         self.console = install(Console(Settings(plain=True), stdout=self.out, stderr=self.out))
-        self.console.ask = self._ask  # type: ignore[method-assign]
+        self.console.ask = self._ask
 
-    def _ask(self, question: str) -> str | None:
+    def _ask(self, question):
         self.asked.append(question)
         return self._answer(question)
 
-    def read(self, lesson: str, here: Here | None) -> bool:
+    def read(self, lesson, here):
         chosen = CATALOG.lesson(lesson)
         return LineReader(self.console, here, CATALOG, chosen, self.prints(lesson)).read()
 
-    def prints(self, lesson: str) -> Printer:
+    def prints(self, lesson):
         script = read_script(CATALOG.lesson(lesson), CATALOG.warm_ups(lesson))
         return printer(CATALOG, script, self.console.rich(), plain=True)
 
     @property
-    def said(self) -> str:
+    def said(self):
         return self.out.getvalue()
 
 
-def lines(*typed: str) -> Callable[[str], str | None]:
+def lines(*typed):
     """These lines, one after the other; at their end the input ends."""
-    left: Iterator[str] = iter(typed)
+    left = iter(typed)
     return lambda _: next(left, None)
 
 
 @pytest.mark.parametrize("lesson", CATALOG.lesson_ids())
-def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson: str, workspace: Workspace) -> None:
+def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson, workspace):
     someone = Typed(lambda question: "it grows" if question.startswith("Your prediction") else "")
     assert someone.read(lesson, Here.load())
     printed = Typed(lambda _: None)
@@ -92,7 +89,7 @@ def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson: str, worksp
     assert "\x1b" not in someone.said
 
 
-def test_a_prediction_comes_before_its_answer_and_is_judged_below_it(workspace: Workspace) -> None:
+def test_a_prediction_comes_before_its_answer_and_is_judged_below_it(workspace):
     typed = Typed(lines(f"g {ASKED}", "b", "", "it grows", "2", "1", "q"))
     assert not typed.read(LESSON, Here.load())
     said = typed.said
@@ -103,7 +100,7 @@ def test_a_prediction_comes_before_its_answer_and_is_judged_below_it(workspace: 
     assert (one.text, one.judged) == ("it grows", "nearly")
 
 
-def test_no_way_leads_past_an_open_prediction(workspace: Workspace) -> None:
+def test_no_way_leads_past_an_open_prediction(workspace):
     typed = Typed(lines("g 999", "g x", f"g {ASKED + 1}", "q"))
     typed.read(LESSON, Here.load())
     assert typed.said.count("g takes the number of a page, 1 to ") == 2
@@ -117,7 +114,7 @@ def test_no_way_leads_past_an_open_prediction(workspace: Workspace) -> None:
     assert predictions_of(workspace.store.events())[0].text == "r 1", "at a prediction it is one"
 
 
-def test_contents_search_and_an_unknown_word(workspace: Workspace) -> None:
+def test_contents_search_and_an_unknown_word(workspace):
     typed = Typed(lines("t", "/ shadow hamiltonian", "/ compass", "dance", "?", "n", "q"))
     typed.read(LESSON, Here.load())
     assert ": Fingerprints\n" in typed.said
@@ -128,12 +125,12 @@ def test_contents_search_and_an_unknown_word(workspace: Workspace) -> None:
     assert any(question.startswith("Page 2 ") for question in typed.asked), "n goes on"
 
 
-def test_a_cell_runs_is_changed_in_a_file_and_put_back(workspace: Workspace) -> None:
+def test_a_cell_runs_is_changed_in_a_file_and_put_back(workspace):
     """Beyond its prediction, which is skipped; what a cell prints as recorded is not said again."""
     cell = read_script(CATALOG.lesson(LESSON)).shown_cells[0]
     name = f"{LESSON}-1.py"
 
-    def answer(question: str) -> str | None:
+    def answer(question):
         if question.startswith("Your prediction"):
             return ""
         if "r runs cell 1," not in typed.said:
@@ -150,19 +147,16 @@ def test_a_cell_runs_is_changed_in_a_file_and_put_back(workspace: Workspace) -> 
     assert typed.said.count("and printed the same.") == 2
     assert "No cell 999 in this lesson." in typed.said
     assert "and printed, 1 line:\nmine\nEnd of output\n" in typed.said
-    assert cell.output is not None
     assert typed.said.count(cell.output.splitlines()[0]) == 1
     kinds = [event.data for event in workspace.store.events("cell")]
     assert [data.get("printed") for data in kinds if "ran" in data][1] == "mine"
 
 
-def test_outside_of_a_workspace_it_reads_and_says_what_a_task_needs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_outside_of_a_workspace_it_reads_and_says_what_a_task_needs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     typed = Typed(lambda question: "start" if "Make a workspace" not in typed.said and at_a_task() else "")
 
-    def at_a_task() -> bool:
+    def at_a_task():
         return typed.said.rstrip().endswith(CATALOG.tasks(LESSON)[0].summary)
 
     assert typed.read(LESSON, None)
@@ -188,9 +182,9 @@ def integrate(*_):
 """
 
 
-def repeated(text: str) -> list[str]:
+def repeated(text):
     """Sentences that are there more than once."""
-    said: Counter[str] = Counter()
+    said = Counter()
     verbatim = False
     for line in text.splitlines():
         verbatim = verbatim or bool(_VERBATIM.match(line))
@@ -200,14 +194,14 @@ def repeated(text: str) -> list[str]:
     return [one for one, count in said.items() if count > 1]
 
 
-def test_a_sentence_that_is_said_twice_is_found() -> None:
+def test_a_sentence_that_is_said_twice_is_found():
     once = "The energy grows by four per cent."
     code = "Python code, 1 lines:\nx = 1  # the energy grows by itself\nEnd of python code\n"
     assert repeated(f"{once}\n{code}{code}") == []
     assert repeated(f"{once}\nMore of it here. {once}\n") == [once]
 
 
-def heard(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+def heard(capsys, *words):
     capsys.readouterr()
     app.run((*words, "--plain"))
     said = capsys.readouterr()
@@ -215,15 +209,13 @@ def heard(capsys: pytest.CaptureFixture[str], *words: str) -> str:
     return said.out + said.err
 
 
-def test_the_way_through_an_exercise(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_way_through_an_exercise(tmp_path, monkeypatch, capsys):
     """Started, failed, hinted at, mended, looked back at."""
     assert app.run(("init", str(tmp_path / "mine"))) == 0
     monkeypatch.chdir(tmp_path / "mine")
     path = tmp_path / "mine" / EXERCISE / f"{EXERCISE}.py"
     right = solution_path(CATALOG, CATALOG.exercise(EXERCISE)).read_text("utf-8")
-    steps: list[tuple[str, ...]] = [("start", EXERCISE), ("check", EXERCISE), ("hint", EXERCISE)]
+    steps = [("start", EXERCISE), ("check", EXERCISE), ("hint", EXERCISE)]
     steps += [("exercises",), ("lessons",), ("warmup",), ("next",), (), ("progress",)]
     found = {words: repeated(heard(capsys, *words)) for words in steps}
     for wrong in (WRONG, ""):

@@ -3,9 +3,6 @@
 import re
 import signal
 import time
-from collections.abc import Awaitable, Callable
-from pathlib import Path
-from typing import Any
 
 import pytest
 from textual.events import Key
@@ -18,9 +15,8 @@ from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.asking import Edit
 from course.cli.reading.screen.items import CellItem, FigureItem, keys_of
 from course.full_screen import fitting
-from course.progress.workspace import Workspace
-from course.reading.parts import Cell
 from course.reading.record import Place
+from tests.piloted import as_test
 from tests.unit.cli.reading.conftest import CATALOG, drive, screen, settled
 
 LESSON, LESSONS = "numerical-integration", CATALOG.lesson_ids()
@@ -28,21 +24,21 @@ LESSON, LESSONS = "numerical-integration", CATALOG.lesson_ids()
 KEY_S = 0.05
 
 
-def reading(
-    journey: Callable[[ReaderApp, Any], Awaitable[None]],
-    *,
-    size: tuple[int, int] = (80, 24),
-    lesson: str = LESSON,
-    workspace: Workspace | None = None,
-    section: str = "",
-) -> ReaderApp:
+def reading(journey, *, size=(80, 24), lesson=LESSON, workspace=None, section=""):
     """Open a lesson, do what ``journey`` does, leave."""
     app = ReaderApp(CATALOG, lesson, section, workspace)
     drive(app, journey, size)
     return app
 
 
-async def ran(app: ReaderApp, pilot: Any) -> None:
+def reads(**options):
+    """Make a script a test that opens a lesson; one that takes ``mine`` does in that workspace."""
+    return lambda script: as_test(
+        script, lambda journey, mine=None, **_: reading(journey, workspace=mine, **options)
+    )
+
+
+async def ran(app, pilot):
     """Until the cell has ended."""
     for _ in range(1500):
         await pilot.pause(0.02)
@@ -52,17 +48,16 @@ async def ran(app: ReaderApp, pilot: Any) -> None:
     pytest.fail("the cell never ended")
 
 
-def everything(app: ReaderApp) -> str:
+def everything(app):
     """The whole page, also above and below the screen."""
-    assert app.page.book is not None
     return "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
 
 
-def figures_of(app: ReaderApp) -> list[int]:
+def figures_of(app):
     return [i for i, one in enumerate(app.page.progress.script.blocks) if isinstance(one, b.Figure)]
 
 
-async def to_cell(app: ReaderApp, pilot: Any) -> Cell:
+async def to_cell(app, pilot):
     """The first cell of the lesson, at hand: its prediction is skipped."""
     cell = app.page.progress.script.shown_cells[0]
     await to_question(app, pilot)
@@ -72,7 +67,7 @@ async def to_cell(app: ReaderApp, pilot: Any) -> Cell:
     return cell
 
 
-async def editing(app: ReaderApp, pilot: Any) -> Cell:
+async def editing(app, pilot):
     """The first cell of the lesson, in the editor."""
     cell = await to_cell(app, pilot)
     await pilot.press("e")
@@ -80,12 +75,12 @@ async def editing(app: ReaderApp, pilot: Any) -> Cell:
     return cell
 
 
-def below(app: ReaderApp) -> str:
+def below(app):
     """What a box says at its lower edge."""
     return app.screen.query_one(".box").border_subtitle
 
 
-async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
+async def to_question(app, pilot, number=1):
     question = app.page.progress.script.questions[number - 1]
     app._chosen(f"block:{question.index}")
     await pilot.pause()
@@ -147,57 +142,48 @@ def test_a_prediction_is_typed_kept_and_compared_and_a_skip_is_kept_too(mine):
     assert (said["text"], judged["judged"], skipped["text"]) == ("half a metre", "wrong", "")
 
 
-def test_a_second_key_that_closes_a_box_closes_nothing_else():
-    async def journey(app, pilot):
-        await pilot.press("question_mark")
-        await pilot.pause(0.2)
-        await pilot.press("escape")
-        await pilot.pause(0.2)
-        assert len(app.screen_stack) == 1
-        await pilot.press("t")
-        await pilot.pause(0.2)
-        box = app.screen
-        box.close(None)
-        box.close(None)  # was on its way
-        await pilot.pause(0.2)
-        assert len(app.screen_stack) == 1
-
-    reading(journey)
+@reads()
+async def test_a_second_key_that_closes_a_box_closes_nothing_else(app, pilot):
+    await pilot.press("question_mark")
+    await pilot.pause(0.2)
+    await pilot.press("escape")
+    await pilot.pause(0.2)
+    assert len(app.screen_stack) == 1
+    await pilot.press("t")
+    await pilot.pause(0.2)
+    box = app.screen
+    box.close(None)
+    box.close(None)  # was on its way
+    await pilot.pause(0.2)
+    assert len(app.screen_stack) == 1
 
 
-def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(mine):
-
-    async def journey(app, pilot):
-        question = app.page.progress.script.questions[0]
-        app.page.progress.predict(question, "half")
-        app.page.rebuild(*range(question.index, question.end))
-        cell = next(
-            c for c in app.page.progress.script.shown_cells if question.index < c.index < question.end
-        )
-        app._chosen(f"block:{cell.index}")
-        await pilot.pause(0.2)
-        assert isinstance(app.page.item, CellItem)
-        assert "Were you right?" in screen(app)
-        assert "1 right, 2 nearly, 3 wrong   r run" in screen(app)
-        await pilot.press("2")
-        assert app.page.progress.prediction(question).judged == "nearly"
-        await pilot.pause()
-        assert "3 wrong" not in screen(app)
-
-    reading(journey, size=(80, 50), workspace=mine)
+@reads(size=(80, 50))
+async def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(app, pilot, mine):
+    question = app.page.progress.script.questions[0]
+    app.page.progress.predict(question, "half")
+    app.page.rebuild(*range(question.index, question.end))
+    cell = next(c for c in app.page.progress.script.shown_cells if question.index < c.index < question.end)
+    app._chosen(f"block:{cell.index}")
+    await pilot.pause(0.2)
+    assert isinstance(app.page.item, CellItem)
+    assert "Were you right?" in screen(app)
+    assert "1 right, 2 nearly, 3 wrong   r run" in screen(app)
+    await pilot.press("2")
+    assert app.page.progress.prediction(question).judged == "nearly"
+    await pilot.pause()
+    assert "3 wrong" not in screen(app)
 
 
-def test_space_past_an_open_prediction_says_so_and_b_leads_back():
-    async def journey(app, pilot):
-        await to_question(app, pilot)
-        while not app.message.startswith("You passed an open prediction."):
-            before = app.page.top
-            await pilot.press("space")
-            assert app.page.top > before, "to the end without a word"
-        await pilot.press("b")
-        assert "predict" in keys_of(app.page)
-
-    reading(journey)
+@reads()
+async def test_space_past_an_open_prediction_says_so_and_b_leads_back(app, pilot):
+    await to_question(app, pilot)
+    while not app.message.startswith("You passed an open prediction."):
+        before = app.page.top
+        await pilot.press("space")
+        assert app.page.top > before, "to the end without a word"
+    await pilot.press("b")
+    assert "predict" in keys_of(app.page)
 
 
 def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(monkeypatch):
@@ -217,75 +203,69 @@ def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(monkeypatch):
     reading(journey)
 
 
-def test_a_cell_runs_is_changed_fails_is_stopped_and_reset():
-    async def journey(app, pilot):
-        cell = await to_cell(app, pilot)
-        await pilot.press("r")
-        await ran(app, pilot)
-        state = app.page.progress.cell(cell)
-        assert (state.printed, state.error) == (cell.output, "")
-        assert "prints the same" in screen(app)
-        app.page.progress.edit(cell, cell.source + "\nprint(1 / 0)")
-        await pilot.press("r")
-        await ran(app, pilot)
-        assert "ZeroDivisionError" in app.page.progress.cell(cell).error
-        app.page.progress.edit(cell, "while True:\n    pass")
-        await pilot.press("r")
-        await pilot.pause(0.5)
-        await pilot.resize_terminal(60, 30)  # in the middle of a cell
-        await pilot.pause(0.2)
-        assert "Ctrl-C stop it" in screen(app).splitlines()[-1]
-        await pilot.press("ctrl+c")
-        await ran(app, pilot)
-        assert app.page.progress.cell(cell).error == "Stopped."
-        await pilot.press("u", "r")
-        await ran(app, pilot)
-        assert app.page.progress.cell(cell).printed == cell.output
-
-    reading(journey)
+@reads()
+async def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(app, pilot):
+    cell = await to_cell(app, pilot)
+    await pilot.press("r")
+    await ran(app, pilot)
+    state = app.page.progress.cell(cell)
+    assert (state.printed, state.error) == (cell.output, "")
+    assert "prints the same" in screen(app)
+    app.page.progress.edit(cell, cell.source + "\nprint(1 / 0)")
+    await pilot.press("r")
+    await ran(app, pilot)
+    assert "ZeroDivisionError" in app.page.progress.cell(cell).error
+    app.page.progress.edit(cell, "while True:\n    pass")
+    await pilot.press("r")
+    await pilot.pause(0.5)
+    await pilot.resize_terminal(60, 30)  # in the middle of a cell
+    await pilot.pause(0.2)
+    assert "Ctrl-C stop it" in screen(app).splitlines()[-1]
+    await pilot.press("ctrl+c")
+    await ran(app, pilot)
+    assert app.page.progress.cell(cell).error == "Stopped."
+    await pilot.press("u", "r")
+    await ran(app, pilot)
+    assert app.page.progress.cell(cell).printed == cell.output
 
 
-def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction():
-    async def journey(app, pilot):
-        await to_question(app, pilot, 9)
-        assert "the answer is shown here" in screen(app)
-        assert "why not always" not in screen(app)
-        await pilot.press("space")
-        assert "So why not always step implicitly?" in screen(app)
-        await to_question(app, pilot, 9)
-        await pilot.press("s")
-        app.page.show(app.page.book.layout.row(Place(app.page.progress.script.questions[8].answer)))
-        await pilot.pause()
-        assert "The two implicit methods" in screen(app)
-        assert "So why not always step implicitly?" in screen(app)
-
-    reading(journey, size=(80, 90))
+@reads(size=(80, 90))
+async def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction(app, pilot):
+    await to_question(app, pilot, 9)
+    assert "the answer is shown here" in screen(app)
+    assert "why not always" not in screen(app)
+    await pilot.press("space")
+    assert "So why not always step implicitly?" in screen(app)
+    await to_question(app, pilot, 9)
+    await pilot.press("s")
+    app.page.show(app.page.book.layout.row(Place(app.page.progress.script.questions[8].answer)))
+    await pilot.pause()
+    assert "The two implicit methods" in screen(app)
+    assert "So why not always step implicitly?" in screen(app)
 
 
-def test_the_editor_keeps_and_drops():
-    async def journey(app, pilot):
-        cell = await editing(app, pilot)
-        await pilot.press("x", "escape")
-        await pilot.pause()
-        assert app.page.progress.cell(cell).source.startswith("x")
-        await pilot.press("e")
-        await pilot.pause()
-        await pilot.press("y", "ctrl+d")
-        await pilot.pause()
-        assert "again" in below(app), "it asks once"
-        await pilot.press("z")
-        await pilot.pause()
-        assert "again" not in below(app)
-        await pilot.press("ctrl+d", "ctrl+d")
-        await pilot.pause()
-        assert app.page.progress.cell(cell).source.startswith("xf")
-        await pilot.press("e")
-        await pilot.pause()
-        await pilot.press("ctrl+d", "u")
-        await pilot.press("u")
-        assert app.page.progress.cell(cell).source == cell.source
-
-    reading(journey)
+@reads()
+async def test_the_editor_keeps_and_drops(app, pilot):
+    cell = await editing(app, pilot)
+    await pilot.press("x", "escape")
+    await pilot.pause()
+    assert app.page.progress.cell(cell).source.startswith("x")
+    await pilot.press("e")
+    await pilot.pause()
+    await pilot.press("y", "ctrl+d")
+    await pilot.pause()
+    assert "again" in below(app), "it asks once"
+    await pilot.press("z")
+    await pilot.pause()
+    assert "again" not in below(app)
+    await pilot.press("ctrl+d", "ctrl+d")
+    await pilot.pause()
+    assert app.page.progress.cell(cell).source.startswith("xf")
+    await pilot.press("e")
+    await pilot.pause()
+    await pilot.press("ctrl+d", "u")
+    await pilot.press("u")
+    assert app.page.progress.cell(cell).source == cell.source
 
 
 def test_keys_that_come_in_a_burst_act_in_their_order():
@@ -318,51 +298,47 @@ def test_a_key_after_the_one_that_leaves_opens_nothing(key):
     assert reading(journey).failure is None
 
 
-def test_a_low_edge_that_is_too_short_names_the_first_keys_whole():
-    async def journey(app, pilot):
-        await editing(app, pilot)
-        assert below(app) == "Ctrl-R: keep, run   Escape: keep"
-        await pilot.resize_terminal(80, 24)
-        await pilot.pause()
-        assert below(app) == "Ctrl-R: keep, run   Escape: keep   Ctrl-D: drop the changes"
-
-    reading(journey, size=(40, 24))
+@reads(size=(40, 24))
+async def test_a_low_edge_that_is_too_short_names_the_first_keys_whole(app, pilot):
+    await editing(app, pilot)
+    assert below(app) == "Ctrl-R: keep, run   Escape: keep"
+    await pilot.resize_terminal(80, 24)
+    await pilot.pause()
+    assert below(app) == "Ctrl-R: keep, run   Escape: keep   Ctrl-D: drop the changes"
 
 
-def test_the_editor_copies_indents_and_goes_to_both_ends_and_ctrl_c_never_loses_what_was_typed():
-    async def journey(app, pilot):
-        cell = await editing(app, pilot)
-        await pilot.press(*"abc", "shift+left", "shift+left", "ctrl+c")
-        assert app.clipboard == "bc"
-        assert "Copied" in below(app)
-        await pilot.press("right", "d", "ctrl+c")
-        assert app.clipboard == "bc"
-        assert "Nothing is selected" in below(app)
-        await pilot.press("ctrl+end", "enter", *"if 1:  ", "enter", "1", "enter", "ctrl+home", "#", "ctrl+c")
-        assert isinstance(app.screen, Edit), "who goes on typing is asked again"
-        await pilot.press("ctrl+c")
-        await pilot.pause()
-        changed = app.page.progress.cell(cell).source
-        assert changed.startswith("#abcd")
-        assert changed.endswith("\n    if 1:  \n        1\n        "), "it stands in a loop"
-        assert len(app.screen_stack) == 1
+@reads()
+async def test_the_editor_copies_indents_and_goes_to_both_ends_and_ctrl_c_never_loses_what_was_typed(
+    app, pilot
+):
+    cell = await editing(app, pilot)
+    await pilot.press(*"abc", "shift+left", "shift+left", "ctrl+c")
+    assert app.clipboard == "bc"
+    assert "Copied" in below(app)
+    await pilot.press("right", "d", "ctrl+c")
+    assert app.clipboard == "bc"
+    assert "Nothing is selected" in below(app)
+    await pilot.press("ctrl+end", "enter", *"if 1:  ", "enter", "1", "enter", "ctrl+home", "#", "ctrl+c")
+    assert isinstance(app.screen, Edit), "who goes on typing is asked again"
+    await pilot.press("ctrl+c")
+    await pilot.pause()
+    changed = app.page.progress.cell(cell).source
+    assert changed.startswith("#abcd")
+    assert changed.endswith("\n    if 1:  \n        1\n        "), "it stands in a loop"
+    assert len(app.screen_stack) == 1
 
-    reading(journey)
 
-
-def test_ctrl_c_in_the_editor_stops_a_cell_that_runs():
-    async def journey(app, pilot):
-        cell = await editing(app, pilot)
-        await pilot.press(*"while 1: pass", "enter", "ctrl+r")
-        await pilot.pause(0.3)
-        await pilot.press("e", "x", "ctrl+c")
-        await ran(app, pilot)
-        assert app.page.progress.cell(cell).error == "Stopped."
-        await pilot.press("escape")
-        await pilot.pause()
-        assert app.page.progress.cell(cell).source.startswith("xwhile")
-
-    reading(journey)
+@reads()
+async def test_ctrl_c_in_the_editor_stops_a_cell_that_runs(app, pilot):
+    cell = await editing(app, pilot)
+    await pilot.press(*"while 1: pass", "enter", "ctrl+r")
+    await pilot.pause(0.3)
+    await pilot.press("e", "x", "ctrl+c")
+    await ran(app, pilot)
+    assert app.page.progress.cell(cell).error == "Stopped."
+    await pilot.press("escape")
+    await pilot.pause()
+    assert app.page.progress.cell(cell).source.startswith("xwhile")
 
 
 def test_what_is_typed_is_kept_however_the_reader_is_left(mine):
@@ -424,45 +400,41 @@ def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(mine, monkeypat
     assert mine.store.events("bookmark", LESSON)[-1].data["block"] == app.page.place().block > 0
 
 
-def test_links_search_contents_and_the_way_back():
-    async def journey(app, pilot):
-        start = app.page.place()
-        await pilot.press("slash")
-        await pilot.press(*"restitution", "enter")
-        await pilot.pause()
-        await pilot.press("enter")
-        await settled(app, pilot)
-        assert app.page.progress.script.lesson.id != LESSON
-        await pilot.press("backspace")
-        await settled(app, pilot)
-        assert (app.page.progress.script.lesson.id, app.page.place()) == (LESSON, start)
-        await pilot.press("t")
-        await pilot.pause()
-        await pilot.press("end", "enter")
-        await settled(app, pilot)
-        assert app.page.progress.script.lesson.id == CATALOG.lesson_ids()[-1]
-        link = next(item for item in app.page.book.items if item.target.startswith("lesson:"))
-        app.page.item = link
-        await pilot.press("enter")
-        await settled(app, pilot)
-        assert app.page.progress.script.lesson.id == link.target.partition(":")[2].partition("#")[0]
-
-    reading(journey)
+@reads()
+async def test_links_search_contents_and_the_way_back(app, pilot):
+    start = app.page.place()
+    await pilot.press("slash")
+    await pilot.press(*"restitution", "enter")
+    await pilot.pause()
+    await pilot.press("enter")
+    await settled(app, pilot)
+    assert app.page.progress.script.lesson.id != LESSON
+    await pilot.press("backspace")
+    await settled(app, pilot)
+    assert (app.page.progress.script.lesson.id, app.page.place()) == (LESSON, start)
+    await pilot.press("t")
+    await pilot.pause()
+    await pilot.press("end", "enter")
+    await settled(app, pilot)
+    assert app.page.progress.script.lesson.id == CATALOG.lesson_ids()[-1]
+    link = next(item for item in app.page.book.items if item.target.startswith("lesson:"))
+    app.page.item = link
+    await pilot.press("enter")
+    await settled(app, pilot)
+    assert app.page.progress.script.lesson.id == link.target.partition(":")[2].partition("#")[0]
 
 
-def test_tab_comes_to_predictions_cells_and_tasks_before_the_links_beside_them():
-    async def journey(app, pilot):
-        while not (any(i.inline for i in app.page.items()) and any(not i.inline for i in app.page.items())):
-            await pilot.press("space")
-        app.page.item, blocks = None, sum(not item.inline for item in app.page.items())
-        came = []
-        for _ in app.page.items():
-            await pilot.press("tab")
-            came.append(app.page.item.inline)
-        assert came == sorted(came)
-        assert came.count(False) == blocks
-
-    reading(journey, size=(80, 40))
+@reads(size=(80, 40))
+async def test_tab_comes_to_predictions_cells_and_tasks_before_the_links_beside_them(app, pilot):
+    while not (any(i.inline for i in app.page.items()) and any(not i.inline for i in app.page.items())):
+        await pilot.press("space")
+    app.page.item, blocks = None, sum(not item.inline for item in app.page.items())
+    came = []
+    for _ in app.page.items():
+        await pilot.press("tab")
+        came.append(app.page.item.inline)
+    assert came == sorted(came)
+    assert came.count(False) == blocks
 
 
 def test_tab_reaches_everything_that_can_be_acted_on():
@@ -499,17 +471,15 @@ def test_without_colour_nothing_is_said_by_colour(monkeypatch):
 
 
 @pytest.mark.soak
-def test_a_key_is_answered_soon_at_200_columns():
-    async def journey(app, pilot):
-        times = []
-        for key in ["space"] * 8 + ["down"] * 4 + ["b"] * 4 + ["tab"] * 4:
-            begin = time.process_time()
-            await pilot.press(key)
-            times.append(time.process_time() - begin)
-        # The median: a collection of garbage may fall into any single one.
-        assert sorted(times)[len(times) // 2] < KEY_S, times
-
-    reading(journey, size=(200, 50))
+@reads(size=(200, 50))
+async def test_a_key_is_answered_soon_at_200_columns(app, pilot):
+    times = []
+    for key in ["space"] * 8 + ["down"] * 4 + ["b"] * 4 + ["tab"] * 4:
+        begin = time.process_time()
+        await pilot.press(key)
+        times.append(time.process_time() - begin)
+    # The median: a collection of garbage may fall into any single one.
+    assert sorted(times)[len(times) // 2] < KEY_S, times
 
 
 def test_a_figure_is_pixels_with_letters_over_them():
@@ -529,7 +499,7 @@ def test_the_code_of_a_cell_is_printed_as_it_is_in_the_lesson(capsys):
     assert run(["lesson", LESSON, "--code", "99"]) == 5
 
 
-def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
+def test_a_file_that_is_there_is_not_overwritten(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / f"{LESSON}-1.py").write_text("mine")
 
@@ -543,53 +513,47 @@ def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
     assert (tmp_path / f"{LESSON}-1.py").read_text() == "mine"
 
 
-def test_a_box_leaves_no_letters_of_the_page_beside_it():
-    async def journey(app, pilot):
-        for columns in (40, 80, 90, 120):
-            await pilot.resize_terminal(columns, 24)
-            await settled(app, pilot)
-            await pilot.press("question_mark")
-            await pilot.pause(0.2)
-            rows = ["".join(s.text for s in strip) for strip in app.screen._compositor.render_strips()]
-            await pilot.press("escape")
-            await pilot.pause(0.2)
-            within = [re.split("[│╭╰╮╯]", row) for row in rows if set(row) & {*"│╭╰"}]
-            assert {len(row) for row in rows} == {columns}
-            assert len(within) > 10
-            for left, *_, right in within:
-                assert not left.strip() + right.strip()
-
-    reading(journey)
+@reads()
+async def test_a_box_leaves_no_letters_of_the_page_beside_it(app, pilot):
+    for columns in (40, 80, 90, 120):
+        await pilot.resize_terminal(columns, 24)
+        await settled(app, pilot)
+        await pilot.press("question_mark")
+        await pilot.pause(0.2)
+        rows = ["".join(s.text for s in strip) for strip in app.screen._compositor.render_strips()]
+        await pilot.press("escape")
+        await pilot.pause(0.2)
+        within = [re.split("[│╭╰╮╯]", row) for row in rows if set(row) & {*"│╭╰"}]
+        assert {len(row) for row in rows} == {columns}
+        assert len(within) > 10
+        for left, *_, right in within:
+            assert not left.strip() + right.strip()
 
 
-def test_what_stands_for_a_closed_answer_is_on_no_screen_of_its_own():
-    async def journey(app, pilot):
-        layout, lines = app.page.book.layout, app.page.book.lines
-        said = 0
-        for start in layout.starts:
-            rows = ["".join(s.text for s in line).strip() for line in lines[start : layout.end_of(start)]]
-            words = [row for row in rows if row]
-            said += any(row.startswith("After your prediction") for row in words)
-            assert len(words) > 1, words
-        assert said > 5
-
-    reading(journey, size=(120, 40))
+@reads(size=(120, 40))
+async def test_what_stands_for_a_closed_answer_is_on_no_screen_of_its_own(app, pilot):
+    layout, lines = app.page.book.layout, app.page.book.lines
+    said = 0
+    for start in layout.starts:
+        rows = ["".join(s.text for s in line).strip() for line in lines[start : layout.end_of(start)]]
+        words = [row for row in rows if row]
+        said += any(row.startswith("After your prediction") for row in words)
+        assert len(words) > 1, words
+    assert said > 5
 
 
-def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut() -> None:
-    async def look(app: ReaderApp, pilot: Any) -> None:
-        page, book = app.page, app.page.book
-        assert book is not None
-        cut = page.end()
-        assert cut < page.top + page.room
-        app.page.rebuild(figures_of(app)[-1])
-        await pilot.pause()
-        assert page.end() == cut
-
-    reading(look, size=(40, 20), section="worked-example-one-step-by-hand")
+@reads(size=(40, 20), section="worked-example-one-step-by-hand")
+async def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(app, pilot):
+    page, book = app.page, app.page.book
+    assert book is not None
+    cut = page.end()
+    assert cut < page.top + page.room
+    app.page.rebuild(figures_of(app)[-1])
+    await pilot.pause()
+    assert page.end() == cut
 
 
-def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all() -> None:
+def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all():
     keys = "r run   e change   u undo   c copy   w write   Space on   ? keys"
     assert fitting(keys, 100) == keys
     assert fitting(keys, 38, more="? keys") == "r run   e change   u undo   ? keys"

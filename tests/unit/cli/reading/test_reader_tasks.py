@@ -1,10 +1,7 @@
 """Warm-ups and exercises in the reader: in their place, started, checked, mended, done without leaving it."""
 
 import signal
-from collections.abc import Awaitable, Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,7 +11,6 @@ from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.printing import _said
 from course.cli.reading.screen.running import Drawer
 from course.errors import MissingCapabilityError
-from course.progress.workspace import Workspace
 from course.reading.parts import read_script, words_of
 from tests.unit.cli.reading.conftest import CATALOG, drive, screen
 
@@ -25,14 +21,10 @@ CHECK = {
 }  # fmt: skip
 
 
-def doing(
-    workspace: Workspace | None,
-    journey: Callable[[ReaderApp, Any], Awaitable[None]],
-    pictures: Drawer | None = None,
-) -> None:
+def doing(workspace, journey, pictures=None):
     """Open the lesson at its warm-up, do what ``journey`` does, leave."""
 
-    async def there(app: ReaderApp, pilot: Any) -> None:
+    async def there(app, pilot):
         blocks = app.page.progress.script.blocks
         index = next(i for i, one in enumerate(blocks) if isinstance(one, b.Task) and one.id == TASK)
         app._chosen(f"block:{index}")
@@ -42,13 +34,12 @@ def doing(
     drive(ReaderApp(CATALOG, LESSON, workspace=workspace, pictures=pictures), there)
 
 
-def file_of(workspace: Workspace) -> Path:
+def file_of(workspace):
     return workspace.root / "warm-ups" / TASK / "which_line_first.py"
 
 
-async def answered(app: ReaderApp, pilot: Any) -> None:
+async def answered(app, pilot):
     """Until nothing is being checked."""
-    assert app.page.practice is not None
     for _ in range(3000):
         await pilot.pause(0.02)
         if not app.page.practice.of(TASK).busy:
@@ -57,14 +48,13 @@ async def answered(app: ReaderApp, pilot: Any) -> None:
     pytest.fail("the check never ended")
 
 
-def test_a_warm_up_stands_at_the_end_of_its_section() -> None:
+def test_a_warm_up_stands_at_the_end_of_its_section():
     script = read_script(CATALOG.lesson(LESSON), CATALOG.warm_ups(LESSON))
     bare = read_script(CATALOG.lesson(LESSON))
     tasks = [(i, one) for i, one in enumerate(script.blocks) if isinstance(one, b.Task)]
     assert [one.id for _, one in tasks] == [one.id for one in CATALOG.warm_ups(LESSON)]
     for index, task in tasks:
         section = script.section_at(index)
-        assert section is not None
         assert CATALOG.exercise(task.id).after in (section.slug, "")
         assert index + 1 == section.end
     assert [cell.key for cell in script.cells] == [cell.key for cell in bare.cells]
@@ -73,7 +63,7 @@ def test_a_warm_up_stands_at_the_end_of_its_section() -> None:
     assert "mass on a spring" in words_of(tasks[1][1]), "search finds it"
 
 
-def test_no_prediction_keeps_a_task_closed() -> None:
+def test_no_prediction_keeps_a_task_closed():
     for lesson in CATALOG.lesson_ids():
         script = read_script(CATALOG.lesson(lesson), CATALOG.tasks(lesson))
         closed = [
@@ -85,10 +75,8 @@ def test_no_prediction_keeps_a_task_closed() -> None:
 
 
 @pytest.mark.parametrize("how", ["escape", "ctrl+q", "SIGTERM", "SIGHUP"])
-def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is_left(
-    mine: Workspace, how: str
-) -> None:
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is_left(mine, how):
+    async def journey(app, pilot):
         await pilot.press("e")
         await pilot.pause(0.2)
         assert "Ctrl-R: keep, check" in app.screen.query_one(".box").border_subtitle
@@ -103,10 +91,10 @@ def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is
     assert file_of(mine).read_text().startswith("#")
 
 
-def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(mine: Workspace) -> None:
+def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(mine):
     path = file_of(mine)
 
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+    async def journey(app, pilot):
         await pilot.press("e")
         await pilot.pause(0.2)
         path.write_text("# from another editor\n")
@@ -117,10 +105,10 @@ def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(mine:
 
 
 @pytest.mark.parametrize("typed", ["", "#"])
-def test_what_another_editor_saved_meanwhile_is_not_lost(mine: Workspace, typed: str) -> None:
+def test_what_another_editor_saved_meanwhile_is_not_lost(mine, typed):
     path = file_of(mine)
 
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+    async def journey(app, pilot):
         await pilot.press("e")
         await pilot.pause(0.2)
         path.write_text("# from another editor\n")
@@ -135,13 +123,13 @@ def test_what_another_editor_saved_meanwhile_is_not_lost(mine: Workspace, typed:
     assert ("from another editor" in path.read_text()) == (not typed)
 
 
-def test_what_cannot_be_written_stays_in_the_editor(mine: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object) -> None:
+def test_what_cannot_be_written_stays_in_the_editor(mine, monkeypatch):
+    def refuse(*_):
         raise MissingCapabilityError(
             "The workspace cannot be written.", help="Make room.", code="not_writable"
         )
 
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+    async def journey(app, pilot):
         await pilot.press("e")
         await pilot.pause(0.2)
         await pilot.press("#")
@@ -159,10 +147,10 @@ def test_what_cannot_be_written_stays_in_the_editor(mine: Workspace, monkeypatch
     assert file_of(mine).read_text().startswith("#")
 
 
-def test_what_is_done_is_remembered(mine: Workspace) -> None:
+def test_what_is_done_is_remembered(mine):
     mine.store.append("check", TASK, {"all_pass": True})
 
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+    async def journey(app, pilot):
         assert "5 minutes, done" in screen(app)
         await pilot.press("t")
         await pilot.pause(0.2)
@@ -173,8 +161,8 @@ def test_what_is_done_is_remembered(mine: Workspace) -> None:
     doing(mine, journey)
 
 
-def test_outside_of_a_workspace_it_says_what_is_needed() -> None:
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+def test_outside_of_a_workspace_it_says_what_is_needed():
+    async def journey(app, pilot):
         assert "course init my-course" in screen(app)
         await pilot.press("r", "e", "enter")
         await pilot.pause()
@@ -183,12 +171,12 @@ def test_outside_of_a_workspace_it_says_what_is_needed() -> None:
     doing(None, journey)
 
 
-def test_its_editor_opens_at_the_function_that_the_finding_is_about(mine: Workspace) -> None:
+def test_its_editor_opens_at_the_function_that_the_finding_is_about(mine):
     from textual.widgets import TextArea
 
-    at: list[str] = []
+    at = []
 
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+    async def journey(app, pilot):
         await pilot.press("enter")
         await pilot.pause()
         path = file_of(mine)
@@ -205,10 +193,8 @@ def test_its_editor_opens_at_the_function_that_the_finding_is_about(mine: Worksp
     assert at[0].startswith(f"def {task.id}(")
 
 
-def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so_when_opened_again(
-    mine: Workspace,
-) -> None:
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so_when_opened_again(mine):
+    async def journey(app, pilot):
         assert "Which line comes first?" in screen(app)
         await pilot.pause(0.6)  # longer than between two looks at a file, which is not there yet
         assert "Enter puts its file into your workspace" in screen(app)
@@ -231,7 +217,7 @@ def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so
         assert f"Fixed: {CATALOG.exercise(TASK).task[0].id}" in screen(app)
         assert "Done: every check passes." in screen(app)
 
-    async def again(app: ReaderApp, pilot: Any) -> None:
+    async def again(app, pilot):
         await pilot.press(*["down"] * 12)
         await pilot.pause()
         assert "Done: every check passed." in screen(app)
@@ -243,19 +229,19 @@ def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so
     assert [event.subject for event in mine.store.events("start")] == [TASK]
 
 
-def test_what_is_not_written_yet_is_no_error_and_stands_behind_what_fails() -> None:
+def test_what_is_not_written_yet_is_no_error_and_stands_behind_what_fails():
     stub = {**CHECK, "status": "error", "diagnosis": "NOT_IMPLEMENTED", "help": "Replace it."}
     assert [str(line) for line in _said({"checks": [stub]}, "")] == ["to do: It grows", "Replace it."]
     assert str(next(_said({"checks": [stub, CHECK]}, ""))) == "FAIL: It grows"
 
 
-def test_the_curve_of_a_failed_check_stands_above_its_finding(mine: Workspace) -> None:
+def test_the_curve_of_a_failed_check_stands_above_its_finding(mine):
     """An exercise's, put where a warm-up is: a reply is a reply."""
     words = {"quantity": "q", "units": "m", "right_is": "RK4", "description": "Your curve leaves it."}
     numbers = {"t": list(range(40)), "yours": [2 * i for i in range(40)], "right": list(range(40))}
     reply = {"ok": False, "checks": [CHECK], "curves": [words | numbers]}
 
-    async def journey(app: ReaderApp, pilot: Any) -> None:
+    async def journey(app, pilot):
         practice = app.page.practice
         practice.start(TASK)
         practice._standings[TASK] = replace(practice.of(TASK), reply=reply)

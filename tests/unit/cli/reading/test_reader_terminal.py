@@ -5,11 +5,9 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
 
 import pytest
 
-from course.progress.workspace import Workspace
 from tests.command_line import in_process
 from tests.terminals import AS_IT_WAS, Terminal, needs_tmux
 
@@ -18,14 +16,12 @@ LESSON = "numerical-integration"
 
 
 @pytest.fixture
-def terminal(mine: Workspace) -> Iterator[Terminal]:
+def terminal(mine):
     with contextlib.closing(Terminal(mine.root, (80, 24))) as made:
         yield made
 
 
-def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
-    terminal: Terminal, mine: Workspace
-) -> None:
+def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(terminal, mine):
     store = mine.store
     terminal.line(f"sh -c 'echo $$ > pid; exec {sys.executable} -m course lesson {LESSON}'")
     terminal.wait("min left")
@@ -64,7 +60,7 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
     assert store.events("bookmark", LESSON)[-1].data["block"] == place["block"]
 
 
-def test_after_a_lesson_in_watch_a_stop_and_fg_go_on(terminal: Terminal, mine: Workspace) -> None:
+def test_after_a_lesson_in_watch_a_stop_and_fg_go_on(terminal, mine):
     assert in_process("-C", mine.root, "start", "integrators").returncode == 0
     terminal.line(f"{sys.executable} -m course watch integrators")
     terminal.wait("q leave")
@@ -87,9 +83,7 @@ def test_after_a_lesson_in_watch_a_stop_and_fg_go_on(terminal: Terminal, mine: W
 @pytest.mark.parametrize(
     "before", ["TERM=dumb", "LANG=C LC_ALL=C PYTHONUTF8=0 PYTHONCOERCECLOCALE=0", "TERM="]
 )
-def test_a_terminal_that_cannot_be_drawn_on_gets_the_printed_lesson(
-    terminal: Terminal, mine: Workspace, before: str
-) -> None:
+def test_a_terminal_that_cannot_be_drawn_on_gets_the_printed_lesson(terminal, mine, before):
     terminal.line(f"env {before} {sys.executable} -m course lesson why-simulate")  # few figures to draw
     assert "\x1b" not in terminal.wait("Next: course")
     assert terminal.state() == AS_IT_WAS

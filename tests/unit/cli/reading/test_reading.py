@@ -3,7 +3,6 @@
 import io
 import re
 from pathlib import Path
-from typing import Any, cast
 
 import pytest
 from rich.console import Console
@@ -83,37 +82,37 @@ $ course check integrators  # looks at your file
 class StubCatalog:
     """Knows one other lesson."""
 
-    def lesson(self, name: str) -> str:
+    def lesson(self, name):
         if name != "other":
             raise NotFoundError("no such lesson")
         return name
 
 
-CATALOG = cast("Any", StubCatalog())
+CATALOG = StubCatalog()
 
 
 @pytest.fixture
-def lesson(tmp_path: Path) -> Lesson:
+def lesson(tmp_path):
     path = tmp_path / "a-lesson.md"
     path.write_text(TEXT, encoding="utf-8")
     return Lesson(1, "a-lesson", "A lesson", 5, "What it is.", ("do this",), (), ("an-exercise",), str(path))
 
 
-def console_of(width: int = 60, **options: Any) -> Console:
+def console_of(width=60, **options):
     return Console(file=io.StringIO(), width=width, markup=False, emoji=False, highlight=False, **options)
 
 
-def written(console: Console) -> str:
-    return cast("io.StringIO", console.file).getvalue()
+def written(console):
+    return console.file.getvalue()
 
 
-def shown(lesson: Lesson, width: int = 60, **options: Any) -> str:
+def shown(lesson, width=60, **options):
     console = console_of(width)
     read_whole(lesson, console, **options)
     return written(console)
 
 
-def read_whole(lesson: Lesson, console: Console, **options: Any) -> list[Path]:
+def read_whole(lesson, console, **options):
     """All of it; the pictures that were written."""
     script = read_script(lesson)
     prints = printer(CATALOG, script, console, **options)
@@ -123,9 +122,7 @@ def read_whole(lesson: Lesson, console: Console, **options: Any) -> list[Path]:
 
 
 @pytest.mark.parametrize("width", [40, 60, 80, 120])
-def test_no_line_is_wider_than_the_screen_or_than_prose_should_be_or_ends_in_blanks(
-    lesson: Lesson, width: int
-) -> None:
+def test_no_line_is_wider_than_the_screen_or_than_prose_should_be_or_ends_in_blanks(lesson, width):
     lines = shown(lesson, width).splitlines()
     assert max(map(len, lines)) <= min(width, 80)
     assert not [line for line in lines if line != line.rstrip()]
@@ -134,7 +131,7 @@ def test_no_line_is_wider_than_the_screen_or_than_prose_should_be_or_ends_in_bla
     assert shown(lesson, width, plain=True) == shown(lesson, 20, plain=True), "no line is broken to a width"
 
 
-def test_the_screen_shows_what_is_there_with_a_name_and_a_figure_by_its_caption(lesson: Lesson) -> None:
+def test_the_screen_shows_what_is_there_with_a_name_and_a_figure_by_its_caption(lesson):
     text = shown(lesson)
     for part in (
         "hω", "4.4 × 10⁸", "z²", 'print("four", 2 + 2)', "four 4", "qₙ₊₁ = qₙ", "A ──▶ B",
@@ -147,7 +144,7 @@ def test_the_screen_shows_what_is_there_with_a_name_and_a_figure_by_its_caption(
 
 
 @pytest.mark.parametrize("width", range(30, 60))
-def test_a_short_formula_is_never_broken_over_two_lines(lesson: Lesson, width: int) -> None:
+def test_a_short_formula_is_never_broken_over_two_lines(lesson, width):
     Path(lesson.path).write_text(
         "+++\n+++\n\nThe growth of it all is $1 + z^2$ on each step.", encoding="utf-8"
     )
@@ -155,9 +152,7 @@ def test_a_short_formula_is_never_broken_over_two_lines(lesson: Lesson, width: i
 
 
 @pytest.mark.parametrize("plain", [False, True])
-def test_figures_are_written_where_asked_and_their_path_is_said(
-    lesson: Lesson, tmp_path: Path, plain: bool
-) -> None:
+def test_figures_are_written_where_asked_and_their_path_is_said(lesson, tmp_path, plain):
     console = console_of(400)
     (picture,) = read_whole(lesson, console, plain=plain, figures_dir=tmp_path / "f", width=400)
     assert picture == tmp_path / "f" / "integrators-stability.png"
@@ -165,7 +160,7 @@ def test_figures_are_written_where_asked_and_their_path_is_said(
     assert f"Picture:{picture}" in "".join(written(console).split())
 
 
-def test_a_diagram_and_a_formula_too_wide_for_the_screen_are_said_in_words(lesson: Lesson) -> None:
+def test_a_diagram_and_a_formula_too_wide_for_the_screen_are_said_in_words(lesson):
     """At 40 columns the right half of a diagram was missing, and nothing said so."""
     drawing = "one ──── two ──── three ──── four ──── five"
     text = f"""+++\n+++\n
@@ -193,7 +188,7 @@ $$
     assert "plus h a sub n" not in wide
 
 
-def test_a_table_too_wide_for_the_screen_becomes_facts(lesson: Lesson) -> None:
+def test_a_table_too_wide_for_the_screen_becomes_facts(lesson):
     words = ("extraordinarily", "incomprehensible", "circumstantially")
     table = f"| {' | '.join(words)} |\n|--|--|--|\n| one | two | three |\n"
     Path(lesson.path).write_text(f"+++\n+++\n\n{table}", encoding="utf-8")
@@ -201,7 +196,7 @@ def test_a_table_too_wide_for_the_screen_becomes_facts(lesson: Lesson) -> None:
     assert "incomprehensible: two" not in shown(lesson, 80)
 
 
-def test_plain_is_words_only(lesson: Lesson) -> None:
+def test_plain_is_words_only(lesson):
     text = shown(lesson, 60, plain=True)
     assert not set(text) & set("─│┃┌▶•ωₙ²")
     assert "x = 1" not in text, "a hidden cell"
@@ -222,14 +217,14 @@ def test_plain_is_words_only(lesson: Lesson) -> None:
         assert f"{line}\n" in text
 
 
-def test_a_terminal_that_cannot_show_the_letters_gets_what_a_screen_reader_gets(lesson: Lesson) -> None:
+def test_a_terminal_that_cannot_show_the_letters_gets_what_a_screen_reader_gets(lesson):
     ascii_file = io.TextIOWrapper(io.BytesIO(), encoding="ascii", errors="replace")
     read_whole(lesson, Console(file=ascii_file, width=60, markup=False))
     ascii_file.seek(0)
     assert "Section: First section" in ascii_file.read()
 
 
-def test_colour_is_left_out_where_it_is_not_wanted(lesson: Lesson, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_colour_is_left_out_where_it_is_not_wanted(lesson, monkeypatch):
     monkeypatch.setenv("TERM", "xterm-256color")
     coloured = console_of(60, force_terminal=True, color_system="256")
     quiet = console_of(60, force_terminal=True, color_system="256", no_color=True)
@@ -240,7 +235,7 @@ def test_colour_is_left_out_where_it_is_not_wanted(lesson: Lesson, monkeypatch: 
     assert not colours.search(written(quiet))
 
 
-def test_without_colour_code_keeps_its_marks(lesson: Lesson) -> None:
+def test_without_colour_code_keeps_its_marks(lesson):
     Path(lesson.path).write_text("+++\n+++\n\nIt takes `steps` steps.", encoding="utf-8")
     texts = []
     for no_color in (True, False):
@@ -251,9 +246,7 @@ def test_without_colour_code_keeps_its_marks(lesson: Lesson) -> None:
     assert "It takes steps steps." in texts[1]
 
 
-def test_a_page_ends_where_a_section_or_a_prediction_does_whose_answer_it_does_not_show(
-    lesson: Lesson,
-) -> None:
+def test_a_page_ends_where_a_section_or_a_prediction_does_whose_answer_it_does_not_show(lesson):
     pages = paginate(read_script(lesson).blocks)
     said = ["\n".join(map(words_of, page)) for page in pages]
     begins = ["Opening words", "First section", "print", "Second section", "Sources"]
@@ -277,17 +270,13 @@ def test_a_page_ends_where_a_section_or_a_prediction_does_whose_answer_it_does_n
         (None, None),
     ],
 )
-def test_pictures_are_shown_only_where_the_terminal_is_known_to_show_them(
-    environ: dict[str, str] | None, protocol: str | None
-) -> None:
+def test_pictures_are_shown_only_where_the_terminal_is_known_to_show_them(environ, protocol):
     """And never through a pipe."""
     console = console_of(force_terminal=environ is not None)
     assert protocol_of(console, environ or {"KITTY_WINDOW_ID": "1"}) == protocol
 
 
-def test_a_picture_is_sent_to_a_terminal_that_shows_it(
-    lesson: Lesson, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_picture_is_sent_to_a_terminal_that_shows_it(lesson, monkeypatch):
     monkeypatch.setenv("KITTY_WINDOW_ID", "1")
     for name in ("TMUX", "STY", "ZELLIJ"):
         monkeypatch.delenv(name, raising=False)
@@ -300,7 +289,7 @@ def test_a_picture_is_sent_to_a_terminal_that_shows_it(
     assert text.index("\x1b_Ga=T") < text.index("They cross.")
 
 
-def test_sentences_end_at_full_stops_and_not_at_initials() -> None:
+def test_sentences_end_at_full_stops_and_not_at_initials():
     assert sentences('One by E. Hairer. "Two" at 0.5 s! Three? (Four.)') == [
         "One by E. Hairer.",
         '"Two" at 0.5 s!',
@@ -318,5 +307,5 @@ def test_sentences_end_at_full_stops_and_not_at_initials() -> None:
         ("180,000", "180,000", "180,000"),
     ],
 )
-def test_a_number_is_written_and_spoken_as_people_do(text: str, on_screen: str, spoken: str) -> None:
+def test_a_number_is_written_and_spoken_as_people_do(text, on_screen, spoken):
     assert (value_text(text), value_spoken(text)) == (on_screen, spoken)

@@ -26,7 +26,7 @@ def warm(course, workspace, monkeypatch, tmp_path_factory):
     return course
 
 
-def add(folder: Path, name: str, order: int) -> None:
+def add(folder, name, order):
     folder.mkdir(parents=True)
     (folder / "exercise.toml").write_text(
         f'format_version = 1\nkind = "warm-up"\nid = "{name}"\ntitle = "One thing {name}"\n'
@@ -41,7 +41,7 @@ def add(folder: Path, name: str, order: int) -> None:
     (folder / "checks.py").write_text("")
 
 
-def write(workspace: Path, name: str, first: str, second: str) -> None:
+def write(workspace, name, first, second):
     text = f"def first(x):\n    return {first!r}\n\n\ndef second(x):\n    return {second!r}\n"
     (workspace / "warm-ups" / name / f"{name}.py").write_text(text)
 
@@ -159,7 +159,7 @@ def test_what_follows_a_report_is_no_check_that_sends_back_to_it(warm, workspace
     store = record(workspace)
     store.append("bookmark", "twice-as-much", {"block": 1, "part": 0.0, "words": ""})
 
-    def step() -> str:
+    def step():
         here = Here.load()
         return after_report(here, here.catalog.exercise("adding"))
 

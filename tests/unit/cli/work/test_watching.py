@@ -100,7 +100,7 @@ def test_saves_are_noticed_quickly(tmp_path, how):
     path.write_text("one")
     noticed = saves([path])
     next(noticed)
-    done: list[float] = []
+    done = []
 
     def save():
         time.sleep(0.2)

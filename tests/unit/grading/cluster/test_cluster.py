@@ -6,9 +6,8 @@ import pickle
 import pickletools
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -16,18 +15,16 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.catalog.models import Exercise
 from course.cli.frame.app import run as course
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.cluster import connect, coordinator, worker
 from course.grading.cluster.coordinator import LostBatch, Outcome, grade_on
 from course.grading.cluster.worker import FORMAT, Answers, Batch, decode, encode
 from course.grading.intake.students import Entry
-from course.grading.running.batch import MAX_TRIES, Graded
+from course.grading.running.batch import MAX_TRIES
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import Snapshot, in_use
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem
 from tests.unit.grading.made import RIGHT
@@ -35,7 +32,7 @@ from tests.unit.grading.made import RIGHT
 POISON = b"poison"
 
 
-def perfect(job: Job) -> Answer:
+def perfect(job):
     return Answer(RIGHT, number=job.number, sha256=Submission(job.files).sha256, version=job.version)
 
 
@@ -63,10 +60,10 @@ class FakeWorkers:
     _lock: Any = field(default_factory=threading.Lock)
     _timer: threading.Timer | None = None
 
-    def places(self) -> int:
+    def places(self):
         return self.most
 
-    def send(self, payload: bytes, done: Callable[[Outcome], None]) -> None:
+    def send(self, payload, done):
         batch = decode(payload, Batch)
         assert batch is not None
         with self._lock:
@@ -75,7 +72,7 @@ class FakeWorkers:
                 self._timer = threading.Timer(0.01, self._round)
                 self._timer.start()
 
-    def _round(self) -> None:
+    def _round(self):
         with self._lock:
             now, self._sent, self._timer = self._sent, [], None
         self.rounds.append([batch for batch, _ in now])
@@ -91,7 +88,7 @@ class FakeWorkers:
                 done(encode(Answers(FORMAT, "there", answers, self.each_s * len(answers))))
 
 
-def entries_of(exercise: Exercise, count: int, special: dict[int, bytes] | None = None) -> list[Entry]:
+def entries_of(exercise, count, special=None):
     special = special or {}
     return [
         Entry(f"s{number:03}", exercise, Submission({"doubling.py": special.get(number, b"# %d" % number)}))
@@ -99,15 +96,15 @@ def entries_of(exercise: Exercise, count: int, special: dict[int, bytes] | None 
     ]
 
 
-def grade(workers: Any, entries: list[Entry], **more: Any) -> list[Graded]:
+def grade(workers, entries, **more):
     return list(grade_on(workers, iter(entries), Terms(seed=5), lambda _: "v1", **more))
 
 
-def is_poison(batch: Batch) -> bool:
+def is_poison(batch):
     return any(POISON in content for job in batch.jobs for content in job.files.values())
 
 
-def test_everyone_is_graded_once_in_batches_that_shrink_towards_the_end(doubling: Exercise) -> None:
+def test_everyone_is_graded_once_in_batches_that_shrink_towards_the_end(doubling):
     entries = entries_of(doubling, 100)
     entries[3] = Entry("s003", doubling, problem=Problem("no_file", "There is none."))
     entries[4] = Entry("s004", doubling)  # not handed in
@@ -129,7 +126,7 @@ def test_everyone_is_graded_once_in_batches_that_shrink_towards_the_end(doubling
 
 
 @pytest.mark.parametrize(("each_s", "largest"), [(0.02, 50), (0.001, 64), (0.3, 8), (2.0, 8)])
-def test_a_batch_is_about_a_second_of_work(doubling: Exercise, each_s: float, largest: int) -> None:
+def test_a_batch_is_about_a_second_of_work(doubling, each_s, largest):
     """The first ones, sent before anything is known, have eight submissions."""
     workers, count = FakeWorkers(1, each_s=each_s), 600 if each_s < 0.1 else 60
     assert len(grade(workers, entries_of(doubling, count))) == count
@@ -142,9 +139,7 @@ def test_a_batch_is_about_a_second_of_work(doubling: Exercise, each_s: float, la
 
 
 @pytest.mark.parametrize(("deaths", "lives"), [(1, MAX_TRIES), (4, 2)])
-def test_a_submission_that_ends_every_worker_is_recorded_and_nobody_else(
-    doubling: Exercise, deaths: int, lives: int
-) -> None:
+def test_a_submission_that_ends_every_worker_is_recorded_and_nobody_else(doubling, deaths, lives):
     """``deaths``: how many workers a scheduler tries by itself before it says that a batch is lost."""
     workers = FakeWorkers(2, deadly=is_poison, deaths=deaths)
     found = {
@@ -160,7 +155,7 @@ def test_a_submission_that_ends_every_worker_is_recorded_and_nobody_else(
     assert len(alone[-1]) == 1, "before it is blamed, it is graded while nothing else is"
 
 
-def test_who_is_graded_beside_a_deadly_submission_is_not_blamed(doubling: Exercise) -> None:
+def test_who_is_graded_beside_a_deadly_submission_is_not_blamed(doubling):
     """One process with four threads: each death takes three others with it."""
     workers = FakeWorkers(4, deadly=is_poison, together=True)
     entries = entries_of(doubling, 60, {7: POISON, 8: POISON + b"2"})
@@ -169,10 +164,10 @@ def test_who_is_graded_beside_a_deadly_submission_is_not_blamed(doubling: Exerci
     assert len(found) == 60
 
 
-def test_what_a_batch_had_before_a_worker_refused_is_not_lost(doubling: Exercise) -> None:
+def test_what_a_batch_had_before_a_worker_refused_is_not_lost(doubling):
     entries = entries_of(doubling, 4)
 
-    def answer(job: Job) -> Answer:
+    def answer(job):
         if job.files["doubling.py"] == b"# 0":
             return perfect(job)
         error = MissingCapabilityError("Other graders.", help="Install them.", code="version_mismatch")
@@ -193,30 +188,26 @@ def test_what_a_batch_had_before_a_worker_refused_is_not_lost(doubling: Exercise
     ],
     ids=["no grader survived it", "by other graders"],
 )
-def test_what_is_no_verdict_of_the_runs_graders_is_our_fault(
-    doubling: Exercise, answer: Callable[[Job], Answer], code: str
-) -> None:
+def test_what_is_no_verdict_of_the_runs_graders_is_our_fault(doubling, answer, code):
     (found,) = grade(FakeWorkers(1, answer=answer), entries_of(doubling, 1))
     assert (found.verdict.state, found.verdict.error.code) == ("grader_error", code)
 
 
-def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(
-    doubling: Exercise, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(doubling, monkeypatch):
     monkeypatch.setattr(coordinator, "_TICK_S", 0.01)
 
     class Nobody:
-        def places(self) -> int:
+        def places(self):
             return 0
 
-        def send(self, _payload: bytes, _done: Callable[[Outcome], None]) -> None:
+        def send(self, _payload, _done):
             pass
 
     with pytest.raises(MissingCapabilityError, match="no workers left"):
         grade(Nobody(), entries_of(doubling, 2), patience_s=0.05)
 
 
-def test_messages_of_another_format_are_refused_and_not_half_understood() -> None:
+def test_messages_of_another_format_are_refused_and_not_half_understood():
     batch = Batch(FORMAT, Terms(), ())
     assert decode(encode(batch), Batch) == batch
     newer = msgspec.structs.replace(batch, format=FORMAT + 1)
@@ -228,15 +219,15 @@ def test_messages_of_another_format_are_refused_and_not_half_understood() -> Non
         assert answer.error.code == "version_mismatch"
 
 
-def test_nothing_is_pickled_but_the_name_of_a_function_and_bytes() -> None:
-    sent: list[tuple[Any, ...]] = []
+def test_nothing_is_pickled_but_the_name_of_a_function_and_bytes():
+    sent = []
 
     class Future:
-        def add_done_callback(self, _: object) -> None:
+        def add_done_callback(self, _):
             pass
 
     class Client:
-        def submit(self, *args: Any, **_: Any) -> Future:
+        def submit(self, *args, **_):
             sent.append(args)
             return Future()
 
@@ -249,35 +240,35 @@ def test_nothing_is_pickled_but_the_name_of_a_function_and_bytes() -> None:
     assert pickle.loads(pickle.dumps(function)) is worker.grade_batch
 
 
-def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands() -> None:
+def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands():
     pytest.importorskip("distributed", reason="needs the extra `cluster`")
     from distributed import KilledWorker
 
     class Future:
-        def __init__(self, status: str, error: BaseException | None = None, value: Any = None) -> None:
+        def __init__(self, status, error=None, value=None):
             self.status, self._error, self._value = status, error, value
 
-        def exception(self) -> BaseException | None:
+        def exception(self):
             return self._error
 
-        def result(self) -> Any:
+        def result(self):
             return self._value
 
-    seen: list[Any] = []
+    seen = []
 
     class Client:
         status = "running"
 
-        def submit(self, *_: Any, **__: Any) -> Any:
+        def submit(self, *_, **__):
             return self
 
-        def add_done_callback(self, call: Callable[[Any], None]) -> None:
+        def add_done_callback(self, call):
             call(self.future)
 
         future: Future
 
     client = Client()
-    killed = KilledWorker("key", None, 3)  # type: ignore[arg-type]
+    killed = KilledWorker("key", None, 3)
     absent = RuntimeError("while reading the graph")
     absent.__cause__ = ModuleNotFoundError("No module named 'course'")
     for client.future in (
@@ -297,10 +288,10 @@ def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands() -
 
 
 @pytest.fixture
-def at_work() -> Iterator[Callable[..., Answers]]:
+def at_work():
     """Has this process do what a Dask worker does, on the miniature course."""
 
-    def answers(jobs: list[Job], level: str | None = "L1") -> Answers:
+    def answers(jobs, level="L1"):
         snapshot = Snapshot.take(content())
         terms = Terms(level, "L1", 5.0, graders=snapshot.sha256)
         reply = decode(
@@ -318,9 +309,9 @@ def at_work() -> Iterator[Callable[..., Answers]]:
 
 
 def test_a_worker_scores_as_a_session_does_with_a_grader_that_stays_warm_is_replaced_and_ends_without_work(
-    at_work: Callable[..., Answers], session: GradingSession, catalog: Catalog, solution: bytes,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:  # fmt: skip
+    at_work, session, catalog, solution,
+    monkeypatch
+):  # fmt: skip
     version = grader_version(session.exercise, catalog)
     sources = [solution, solution + b"\ndef double(x):\n    return x\n", b"def ("]
     processes = []
@@ -340,7 +331,7 @@ def test_a_worker_scores_as_a_session_does_with_a_grader_that_stays_warm_is_repl
     assert not worker._idle
 
 
-def test_a_worker_that_lacks_the_graders_is_sent_them(catalog: Catalog) -> None:
+def test_a_worker_that_lacks_the_graders_is_sent_them(catalog):
     workers = FakeWorkers(2, lacking=2)
     entries = entries_of(catalog.exercise("doubling"), 60)
     found = grade(workers, entries, graders=b"a snapshot")
@@ -351,9 +342,7 @@ def test_a_worker_that_lacks_the_graders_is_sent_them(catalog: Catalog) -> None:
     assert sum(bool(batch.graders) for batch in batches) <= 4, "only to those that ask"
 
 
-def test_a_worker_grades_by_the_snapshot_it_was_sent(
-    at_work: Callable[..., Answers], catalog: Catalog, solution: bytes, copied: Path
-) -> None:
+def test_a_worker_grades_by_the_snapshot_it_was_sent(at_work, catalog, solution, copied):
     edited = Catalog()
     snapshot = Snapshot.take(edited.content)
     version = grader_version(edited.exercise("doubling"), edited)
@@ -374,9 +363,7 @@ def test_a_worker_grades_by_the_snapshot_it_was_sent(
     assert in_use(snapshot.sha256) is None
 
 
-def test_a_worker_with_other_graders_refuses_before_it_grades(
-    at_work: Callable[..., Answers], solution: bytes
-) -> None:
+def test_a_worker_with_other_graders_refuses_before_it_grades(at_work, solution):
     for exercise in ("doubling", "unheard-of"):
         jobs = [Job(exercise, {"doubling.py": solution}, "0123456789abcdef")] * 2
         (answer,) = at_work(jobs).answers
@@ -386,10 +373,10 @@ def test_a_worker_with_other_graders_refuses_before_it_grades(
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="processes are not kept on processors here")
-def test_graders_on_one_machine_take_different_processors(monkeypatch: pytest.MonkeyPatch) -> None:
-    started: list[int] = []
+def test_graders_on_one_machine_take_different_processors(monkeypatch):
+    started = []
 
-    def start(config: Config) -> Any:
+    def start(config):
         started.append(config.processor)
         raise OSError
 
@@ -409,9 +396,7 @@ def test_graders_on_one_machine_take_different_processors(monkeypatch: pytest.Mo
 # -- the command --------------------------------------------------------------------------------------------
 
 
-def test_without_dask_the_command_that_installs_it_is_said(
-    catalog: Catalog, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_dask_the_command_that_installs_it_is_said(catalog, monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
     missing = pytest.raises(MissingCapabilityError, match="distributed and cryptography")
     with missing as raised, connect.local_cluster(2):
@@ -419,9 +404,7 @@ def test_without_dask_the_command_that_installs_it_is_said(
     assert "pip install 'distributed>=" in raised.value.help
 
 
-def test_a_cluster_of_others_does_not_run_unprotected_submissions(
-    catalog: Catalog, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_cluster_of_others_does_not_run_unprotected_submissions(catalog, monkeypatch):
     monkeypatch.setattr(connect, "require", lambda part: None)
     with (
         connect.remote_cluster("tls://nowhere.invalid:1") as grade,
@@ -430,7 +413,7 @@ def test_a_cluster_of_others_does_not_run_unprotected_submissions(
         next(grade(iter(()), Terms(at_least="L1")))
 
 
-def test_ways_of_grading_exclude_each_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_ways_of_grading_exclude_each_other(tmp_path, capsys):
     out, alone = tmp_path / "out", "-j is for a run without a cluster"
     for words, said in (
         ("--local-cluster 2 --scheduler tls://x:1", "two clusters"),

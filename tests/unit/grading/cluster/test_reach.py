@@ -7,13 +7,9 @@ import socket
 import ssl
 import threading
 import time
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import pytest
 
-from course.catalog.load import Catalog
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.running.run import RunOptions, grade_class
 from tests.unit.grading.made import NEEDS_CLUSTER
@@ -21,7 +17,7 @@ from tests.unit.grading.made import NEEDS_CLUSTER
 pytestmark = NEEDS_CLUSTER
 
 
-def certificate(folder: Path, name: str, signer: tuple[Any, Any] | None = None) -> tuple[Any, Any]:
+def certificate(folder, name, signer=None):
     """A certificate and its key, in files of that name; signed by itself if by nobody else."""
     from cryptography import x509
     from cryptography.hazmat.primitives import hashes, serialization
@@ -50,7 +46,7 @@ def certificate(folder: Path, name: str, signer: tuple[Any, Any] | None = None) 
 
 
 @pytest.fixture(scope="module")
-def pems(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def pems(tmp_path_factory):
     """Of an authority: ``ca``, ``head`` and ``me``; of another one: ``other`` and ``stranger``."""
     folder = tmp_path_factory.mktemp("pems")
     for authority, signed in (("ca", ("head", "me")), ("other", ("stranger",))):
@@ -60,7 +56,7 @@ def pems(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def serve(sock: socket.socket, context: ssl.SSLContext | None, stop: threading.Event) -> None:
+def serve(sock, context, stop):
     """Greets whoever comes, as a Dask scheduler does: in TLS, or plainly."""
     while not stop.is_set():
         try:
@@ -79,7 +75,7 @@ def serve(sock: socket.socket, context: ssl.SSLContext | None, stop: threading.E
 
 
 @contextlib.contextmanager
-def scheduler(pems: Path | None) -> Iterator[int]:
+def scheduler(pems):
     """The port of something that looks like a scheduler, with TLS if there are certificates for it."""
     context = None
     if pems is not None:
@@ -101,7 +97,7 @@ def scheduler(pems: Path | None) -> Iterator[int]:
             thread.join()
 
 
-def said(address: str, settings: dict[str, Any]) -> CourseError | None:
+def said(address, settings):
     """Why that scheduler cannot be used with these settings of Dask's; None if it can."""
     import dask
     import distributed  # noqa: F401 - brings its settings
@@ -112,7 +108,7 @@ def said(address: str, settings: dict[str, Any]) -> CourseError | None:
     known = {f"distributed.comm.tls.{name}": value for name, value in (none | settings).items()}
     known["distributed.comm.require-encryption"] = settings.get("require-encryption")
     known.pop("distributed.comm.tls.require-encryption", None)
-    found: CourseError | None = None
+    found = None
     used = time.process_time()
     with dask.config.set(known):
         try:
@@ -126,7 +122,7 @@ def said(address: str, settings: dict[str, Any]) -> CourseError | None:
     return found
 
 
-def mine(pems: Path) -> dict[str, str]:
+def mine(pems):
     return {
         "ca-file": str(pems / "ca.pem"),
         "client.cert": str(pems / "me.pem"),
@@ -135,7 +131,7 @@ def mine(pems: Path) -> dict[str, str]:
 
 
 #: Settings -> what is said; ``{}`` stands for the folder of the certificates.
-WRONG: dict[str, tuple[dict[str, str], str]] = {
+WRONG = {
     "none": ({}, "needs the authority's certificate and a certificate of yours and the key"),
     "no authority": ({"ca-file": ""}, "needs the authority's certificate, and"),
     "no key": ({"client.key": ""}, "needs the key of that certificate, and"),
@@ -150,11 +146,11 @@ WRONG: dict[str, tuple[dict[str, str], str]] = {
 }
 
 
-def test_each_wrong_setting_is_one_sentence_and_the_right_ones_are_none(pems: Path) -> None:
+def test_each_wrong_setting_is_one_sentence_and_the_right_ones_are_none(pems):
     with scheduler(pems) as port:
         address = f"tls://127.0.0.1:{port}"
         for name, (change, words) in WRONG.items():
-            settings: dict[str, str] = {}
+            settings = {}
             if name != "none":
                 settings = mine(pems) | {key: value.format(pems) for key, value in change.items()}
             error = said(address, settings)
@@ -169,7 +165,7 @@ def test_each_wrong_setting_is_one_sentence_and_the_right_ones_are_none(pems: Pa
         assert "speaks TLS" in error.message
 
 
-def test_a_plain_scheduler_and_none_at_all(pems: Path, tmp_path: Path) -> None:
+def test_a_plain_scheduler_and_none_at_all(pems, tmp_path):
     with scheduler(None) as port:
         assert said(f"tcp://127.0.0.1:{port}", {}) is None
         assert said(f"127.0.0.1:{port}", {}) is None
@@ -191,7 +187,7 @@ def test_a_plain_scheduler_and_none_at_all(pems: Path, tmp_path: Path) -> None:
     assert said("ucx://somewhere:1", {}) is None, "Dask knows more ways than are looked at here"
 
 
-def test_a_scheduler_that_cannot_be_reached_leaves_no_folder(tmp_path: Path, catalog: Catalog) -> None:
+def test_a_scheduler_that_cannot_be_reached_leaves_no_folder(tmp_path, catalog):
     from course.grading.cluster.connect import remote_cluster
 
     with socket.create_server(("127.0.0.1", 0)) as sock:

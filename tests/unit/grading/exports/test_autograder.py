@@ -6,21 +6,14 @@ import stat
 import subprocess
 import tomllib
 import zipfile
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import pytest
 from packaging.requirements import Requirement
 
-from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.grading import container
 from course.grading.container import SNAPSHOT, main, write_autograder
-from course.grading.intake.students import Entry
-from course.grading.running.batch import Graded
 from course.grading.running.snapshot import Snapshot
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import right
 
@@ -29,7 +22,7 @@ INSTALLED = ("msgspec", "numpy", "pymunk", "pytest")
 
 
 @pytest.fixture(scope="module")
-def unpacked(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog) -> Path:
+def unpacked(tmp_path_factory, catalog):
     """The autograder as Gradescope unpacks it into ``source``."""
     folder = tmp_path_factory.mktemp("autograder")
     path = folder / "autograder.zip"
@@ -40,9 +33,7 @@ def unpacked(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog) -> Path
     return folder
 
 
-def test_the_zip_has_what_gradescope_runs_and_only_what_grading_needs(
-    unpacked: Path, tmp_path: Path, catalog: Catalog
-) -> None:
+def test_the_zip_has_what_gradescope_runs_and_only_what_grading_needs(unpacked, tmp_path, catalog):
     path = unpacked / "autograder.zip"
     with zipfile.ZipFile(path) as packed:
         modes = {info.filename: info.external_attr >> 16 for info in packed.infolist()}
@@ -62,7 +53,7 @@ def test_the_zip_has_what_gradescope_runs_and_only_what_grading_needs(
     assert again.read_bytes() == path.read_bytes()
 
 
-def test_it_installs_the_versions_this_project_states(unpacked: Path) -> None:
+def test_it_installs_the_versions_this_project_states(unpacked):
     setup = (unpacked / "source" / "setup.sh").read_text("utf-8")
     stated = tomllib.loads((MINI.parents[2] / "pyproject.toml").read_text("utf-8"))["project"]["dependencies"]
     installed = {Requirement(text) for text in re.findall(r"'([a-z][^']*)'", setup) if "=" in text}
@@ -71,7 +62,7 @@ def test_it_installs_the_versions_this_project_states(unpacked: Path) -> None:
 
 
 @pytest.mark.parametrize("script", ["setup.sh", "run_autograder"])
-def test_its_scripts_are_shell(unpacked: Path, script: str) -> None:
+def test_its_scripts_are_shell(unpacked, script):
     path = unpacked / "source" / script
     assert path.read_bytes().startswith(b"#!/usr/bin/env bash\n")
     assert not re.search(rb"[^$]\{[a-z]+\}", path.read_bytes()), "a place that was not filled in"
@@ -79,14 +70,12 @@ def test_its_scripts_are_shell(unpacked: Path, script: str) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(
-    tmp_path: Path, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(tmp_path, solution, monkeypatch):
     """The total is shown at once; a comparison with a drawn number would tell one bit of it each time."""
     (tmp_path / "submission").mkdir()
-    seeds: list[int] = []
+    seeds = []
 
-    def noted(entries: list[Entry], terms: Terms) -> Iterator[Graded]:
+    def noted(entries, terms):
         seeds.append(terms.seed)
         return right(entries, terms)
 
@@ -98,7 +87,7 @@ def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(
     assert all(0 <= seed < 2**63 for seed in seeds)
 
 
-def graded(tmp_path: Path, **changes: object) -> dict[str, Any]:
+def graded(tmp_path, **changes):
     """The body of the results for the submission there, whose exit code is always 0."""
     snapshot = Snapshot.take(content())
     (tmp_path / SNAPSHOT).write_bytes(snapshot.packed)
@@ -106,11 +95,10 @@ def graded(tmp_path: Path, **changes: object) -> dict[str, Any]:
     path, results = tmp_path / "config.json", tmp_path / "results.json"
     path.write_text(json.dumps(facts | {"graders": snapshot.sha256} | changes), "utf-8")
     assert main([str(tmp_path / "submission"), str(results), str(path)]) == 0
-    found: dict[str, Any] = json.loads(results.read_bytes())
-    return found
+    return json.loads(results.read_bytes())
 
 
-def test_what_cannot_be_graded_is_explained_to_the_student(tmp_path: Path) -> None:
+def test_what_cannot_be_graded_is_explained_to_the_student(tmp_path):
     (tmp_path / "submission").mkdir()
     body = graded(tmp_path)
     assert body["score"] == 0
@@ -121,9 +109,7 @@ def test_what_cannot_be_graded_is_explained_to_the_student(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("changes", [{"exercises": ["none"]}, {"at_least": "L9"}, {"graders": "0" * 64}])
-def test_a_fault_of_ours_gives_no_score_and_always_a_results_file(
-    tmp_path: Path, solution: bytes, changes: dict[str, object]
-) -> None:
+def test_a_fault_of_ours_gives_no_score_and_always_a_results_file(tmp_path, solution, changes):
     (tmp_path / "submission").mkdir()
     (tmp_path / "submission" / "doubling.py").write_bytes(solution)
     body = graded(tmp_path, **changes)

@@ -5,9 +5,7 @@ import dataclasses
 import io
 import json
 import re
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as ET
 
 import msgspec
@@ -44,7 +42,7 @@ FOR_STUDENTS = ["junit", "gradescope"]
 
 
 @pytest.fixture(scope="module")
-def class_of_everybody(tmp_path_factory: pytest.TempPathFactory):
+def class_of_everybody(tmp_path_factory):
     """Results of a class with every hostile name, every state, an override and somebody late."""
     out = tmp_path_factory.mktemp("exports")
     verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(HOSTILE)}
@@ -58,7 +56,7 @@ def class_of_everybody(tmp_path_factory: pytest.TempPathFactory):
 
 
 @pytest.fixture
-def results(class_of_everybody: Path):
+def results(class_of_everybody):
     results = Results.open(class_of_everybody)
     results.roster = Roster(
         tuple(
@@ -70,7 +68,7 @@ def results(class_of_everybody: Path):
     results.book.close()
 
 
-def write(results: Results, name: str, tmp_path: Path, options: ExportOptions = OPTIONS) -> Path:
+def write(results, name, tmp_path, options=OPTIONS):
     written = export(results, name, tmp_path, None, options)
     assert written.rows == len(HOSTILE) + 3
     assert written.without_grade == ["broken doubling"]
@@ -79,7 +77,7 @@ def write(results: Results, name: str, tmp_path: Path, options: ExportOptions = 
     return part if part.exists() else tmp_path / usual
 
 
-def test_the_table_has_a_row_for_everybody_and_no_formula(results: Results, tmp_path: Path) -> None:
+def test_the_table_has_a_row_for_everybody_and_no_formula(results, tmp_path):
     path = write(results, "csv", tmp_path)
     rows = read_csv(path)
     assert len(rows) == len({row["student"] for row in rows}) == len(HOSTILE) + 3
@@ -102,7 +100,7 @@ def test_the_table_has_a_row_for_everybody_and_no_formula(results: Results, tmp_
     assert by_name["é漢字"]["email"].endswith("@x.org")
 
 
-def test_the_lines_of_json_have_the_very_ids(results: Results, tmp_path: Path) -> None:
+def test_the_lines_of_json_have_the_very_ids(results, tmp_path):
     lines = [json.loads(line) for line in write(results, "jsonl", tmp_path).read_bytes().splitlines()]
     by_name = {line["student"]: line for line in lines}
     assert by_name.keys() == {*HOSTILE, "late", "set", "broken"}
@@ -126,9 +124,7 @@ def test_the_lines_of_json_have_the_very_ids(results: Results, tmp_path: Path) -
 
 
 @pytest.mark.parametrize("name", ["csv", "jsonl", "html"])
-def test_a_part_never_takes_the_place_of_what_is_about_all(
-    results: Results, tmp_path: Path, name: str
-) -> None:
+def test_a_part_never_takes_the_place_of_what_is_about_all(results, tmp_path, name):
     usual = FORMATS[name][0]
     everything = ExportOptions(zeros=True)
     assert export(results, name, tmp_path, None, everything).paths[0] == tmp_path / usual
@@ -146,7 +142,7 @@ def test_a_part_never_takes_the_place_of_what_is_about_all(
     assert export(results, name, tmp_path, tmp_path / usual, OPTIONS).paths[0] == tmp_path / usual
 
 
-def test_no_export_is_written_over_a_gradebook(results: Results, tmp_path: Path) -> None:
+def test_no_export_is_written_over_a_gradebook(results, tmp_path):
     path = tmp_path / "gradebook.sqlite"
     with make_book(tmp_path, {"ada": RIGHT}):
         pass
@@ -158,28 +154,26 @@ def test_no_export_is_written_over_a_gradebook(results: Results, tmp_path: Path)
 
 
 @pytest.fixture(scope="module")
-def violations() -> Callable[[bytes], list[str]]:
+def violations():
     """A validating reader: what the schema has against a file."""
     xmlschema = pytest.importorskip("xmlschema", reason="needs the extra `dev`: xmlschema is not installed")
     schema = xmlschema.XMLSchema(JUNIT)
 
-    def found(content: bytes) -> list[str]:
-        errors: Any = schema.iter_errors(io.BytesIO(content))
+    def found(content):
+        errors = schema.iter_errors(io.BytesIO(content))
         return [f"{error.path}: {error.reason}" for error in errors]
 
     return found
 
 
-def test_junit_fits_the_schema_whatever_the_names(
-    results: Results, tmp_path: Path, violations: Callable[[bytes], list[str]]
-) -> None:
+def test_junit_fits_the_schema_whatever_the_names(results, tmp_path, violations):
     content = write(results, "junit", tmp_path).read_bytes()
     assert violations(content) == []
     # Breaking one thing is noticed: the reader reads.
     assert violations(content.replace(b'failures="', b'failures="-', 1))
 
 
-def test_junit_counts_right_and_says_whose_it_is(results: Results, tmp_path: Path) -> None:
+def test_junit_counts_right_and_says_whose_it_is(results, tmp_path):
     content = write(results, "junit", tmp_path).read_bytes()
     suites = ET.fromstring(content).findall("testsuite")
     assert len(suites) == len(HOSTILE) + 3
@@ -208,9 +202,7 @@ _VISIBILITY = {"hidden", "after_due_date", "after_published", "visible"}
 _FORMATS = {"text", "simple_format", "html", "md", "ansi"}
 
 
-def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(
-    results: Results, tmp_path: Path
-) -> None:
+def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(results, tmp_path):
     """A score at the top is the total; a test is passed or failed, and shown to students or not.
 
     Source: Gradescope, "Autograder Specifications", "Controlling Test Case Visibility", "Test case status".
@@ -243,7 +235,7 @@ def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(
     assert [test["visibility"] for test in by_name["late"]["tests"]] == ["visible", "after_due_date"]
 
 
-def taken_by_canvas(content: bytes) -> tuple[dict[str, str], dict[tuple[str, str], dict[str, str]]]:
+def taken_by_canvas(content):
     """Points of the assignments by id, and the grades of each student by ID and SIS User ID.
 
     Source: canvas-lms/lib/gradebook_importer.rb: ``row_has_student_headers?``, ``update_column_count``,
@@ -273,7 +265,7 @@ def taken_by_canvas(content: bytes) -> tuple[dict[str, str], dict[tuple[str, str
     return {ids[at]: possible[at] for at in ids}, students
 
 
-def test_canvas_finds_its_students_and_its_assignment(results: Results, tmp_path: Path) -> None:
+def test_canvas_finds_its_students_and_its_assignment(results, tmp_path):
     """Name, ids and section come first, in this order; then a column for each assignment.
 
     Source: Canvas instructor guide, "How do I import grades in the Gradebook?"; canvas-lms/lib/
@@ -290,7 +282,7 @@ def test_canvas_finds_its_students_and_its_assignment(results: Results, tmp_path
     assert names["100"] == safe_cell(HOSTILE[0])
 
 
-def test_moodle_finds_its_students_by_their_key(results: Results, tmp_path: Path) -> None:
+def test_moodle_finds_its_students_by_their_key(results, tmp_path):
     """One row a student, found by whatever field the teacher maps; an empty cell is no grade.
 
     Source: MoodleDocs, "Grade import"; moodle/grade/import/csv/classes/load_data.php, ``update_grade_item``
@@ -307,7 +299,7 @@ def test_moodle_finds_its_students_by_their_key(results: Results, tmp_path: Path
     assert all(re.fullmatch(r"[0-9.]*", grade) for grade in grades.values())
 
 
-def test_an_exercise_that_nobody_handed_in_has_no_column(results: Results, tmp_path: Path) -> None:
+def test_an_exercise_that_nobody_handed_in_has_no_column(results, tmp_path):
     everything = dataclasses.replace(OPTIONS, exercises=())
     for name in ("moodle", "canvas"):
         export(results, name, tmp_path, tmp_path / "all.csv", everything)
@@ -320,7 +312,7 @@ def test_an_exercise_that_nobody_handed_in_has_no_column(results: Results, tmp_p
 
 
 @pytest.mark.parametrize("name", FOR_STUDENTS)
-def test_what_students_may_read_has_nothing_hidden(results: Results, tmp_path: Path, name: str) -> None:
+def test_what_students_may_read_has_nothing_hidden(results, tmp_path, name):
     path = write(results, name, tmp_path)
     files = [path] if path.is_file() else list(path.iterdir())
     text = "\n".join(file.read_text("utf-8-sig") for file in files)
@@ -329,9 +321,7 @@ def test_what_students_may_read_has_nothing_hidden(results: Results, tmp_path: P
 
 
 @pytest.mark.parametrize("name", ["csv", "jsonl", "junit", "gradescope", "canvas", "moodle"])
-def test_students_the_roster_has_not_stop_every_export_unless_partial(
-    results: Results, tmp_path: Path, name: str
-) -> None:
+def test_students_the_roster_has_not_stop_every_export_unless_partial(results, tmp_path, name):
     results.roster = Roster(tuple(person for person in results.roster.people if person.student != "late"))
     with pytest.raises(MissingCapabilityError) as caught:
         export(results, name, tmp_path, None, OPTIONS)
@@ -353,16 +343,14 @@ def test_students_the_roster_has_not_stop_every_export_unless_partial(
         ("moodle", Person("late", moodle_key="key\\")),
     ],
 )
-def test_a_key_that_is_missing_or_would_have_to_be_changed_is_no_key(
-    results: Results, tmp_path: Path, name: str, person: Person
-) -> None:
+def test_a_key_that_is_missing_or_would_have_to_be_changed_is_no_key(results, tmp_path, name, person):
     others = tuple(other for other in results.roster.people if other.student != "late")
     results.roster = Roster((*others, person))
     with pytest.raises(MissingCapabilityError, match="'late'"):
         export(results, name, tmp_path, None, OPTIONS)
 
 
-def test_what_a_platform_needs_is_asked_for(results: Results, tmp_path: Path) -> None:
+def test_what_a_platform_needs_is_asked_for(results, tmp_path):
     for options, code in (
         (ExportOptions(("doubling",)), "needs_assignment"),
         (ExportOptions(("doubling",), {"doubling": "4a"}), "needs_assignment"),
@@ -381,30 +369,30 @@ def test_what_a_platform_needs_is_asked_for(results: Results, tmp_path: Path) ->
     assert list(tmp_path.iterdir()) == []
 
 
-def test_points_are_written_without_noise() -> None:
+def test_points_are_written_without_noise():
     values = [0.0, -0.0, 8.0, 33.3333333, 0.1 + 0.2, 100.0, 1234567.0, None]
     assert [number(value) for value in values] == ["0", "0", "8", "33.3333", "0.3", "100", "1234567", ""]
     assert utc(0.0) == "1970-01-01T00:00:00Z"
 
 
 @given(st.text(alphabet=st.characters(exclude_categories=["Cs"])))
-def test_no_text_becomes_a_formula_or_moves_the_cursor(text: str) -> None:
+def test_no_text_becomes_a_formula_or_moves_the_cursor(text):
     cell = safe_cell(text)
     assert not cell.startswith(("=", "+", "-", "@"))
     assert cell.isprintable()
 
 
-def test_no_two_ids_become_one_cell() -> None:
+def test_no_two_ids_become_one_cell():
     cells = [safe_cell(name) for name in ("=1", "'=1", "''=1", "1", "-1", "'-1")]
     assert len(set(cells)) == len(cells)
     assert [is_safe(text) for text in ("x", "=x", "a\nb")] == [True, False, False]
 
 
-def test_a_file_that_cannot_be_finished_leaves_the_old_one(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_finished_leaves_the_old_one(tmp_path):
     path = tmp_path / "grades.csv"
     path.write_text("old")
 
-    def fill() -> None:
+    def fill():
         with replacing(path) as handle:
             handle.write(b"half of the new")
             raise OSError(28, "No space left on device")

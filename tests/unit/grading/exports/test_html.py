@@ -6,8 +6,6 @@ import hashlib
 import re
 import statistics
 import sys
-from pathlib import Path
-from typing import Any
 
 import jinja2
 import msgspec
@@ -63,7 +61,7 @@ SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]
 ALL = ExportOptions()
 
 
-def quiz_verdict(right: int):
+def quiz_verdict(right):
     """Five questions, so many of them right; ``expected`` is the key, which no page needs."""
     checks = [
         msgspec.structs.replace(
@@ -80,7 +78,7 @@ def quiz_verdict(right: int):
 
 
 @pytest.fixture(scope="module")
-def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def out(tmp_path_factory):
     """A class with every name, every outcome, a quiz, overrides and people who are late."""
     folder = tmp_path_factory.mktemp("html")
     verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(NAMES)}
@@ -102,19 +100,17 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def results(out: Path):
+def results(out):
     with open_results(out) as opened:
         yield opened
 
 
-def places(out: Path) -> dict[str, str]:
+def places(out):
     """Name as a cell of the index -> file of the page."""
     return {row["student"]: row["page"] for row in read_csv(out / "students.csv")}
 
 
-def test_templates_are_compiled_once_where_that_can_be_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_templates_are_compiled_once_where_that_can_be_kept(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     for name, dont, kept in (("file", False, False), ("new", True, False), ("new", False, True)):
         monkeypatch.setattr(sys, "dont_write_bytecode", dont)
@@ -126,7 +122,7 @@ def test_templates_are_compiled_once_where_that_can_be_kept(
             )
             compile_ = environment.compile
 
-            def compiling(source: str, *more: str, then: Any = compile_, into: Any = compiled) -> Any:
+            def compiling(source, *more, then=compile_, into=compiled):
                 into.append(source)
                 return then(source, *more)
 
@@ -135,7 +131,7 @@ def test_templates_are_compiled_once_where_that_can_be_kept(
         assert compiled == (["one", "two"] if kept else ["one", "one", "two"])
 
 
-def test_every_page_is_sound_whatever_the_names(out: Path) -> None:
+def test_every_page_is_sound_whatever_the_names(out):
     pages = {path: read_page(path) for path in [out / "report.html", *(out / "students").iterdir()]}
     pages[out / "students.html"] = read_page(out / "students.html")
     assert len(pages) == len(NAMES) + 5 + 2
@@ -147,13 +143,13 @@ def test_every_page_is_sound_whatever_the_names(out: Path) -> None:
     }
 
 
-def test_a_score_by_hand_for_what_was_not_handed_in_needs_no_time(out: Path, results) -> None:
+def test_a_score_by_hand_for_what_was_not_handed_in_needs_no_time(out, results):
     without = sum(bool(one.result.number) and one.submitted_at is None for one in results.all())
     said = " ".join((out / "report.html").read_text("utf-8").split())
     assert f"{without} have no trusted submission time" in said
 
 
-def test_a_name_is_shown_as_text_on_the_page_of_its_own(out: Path) -> None:
+def test_a_name_is_shown_as_text_on_the_page_of_its_own(out):
     found = places(out)
     assert len(found) == len(NAMES) + 5
     listed = read_page(out / "students.html").text
@@ -165,7 +161,7 @@ def test_a_name_is_shown_as_text_on_the_page_of_its_own(out: Path) -> None:
         assert len(page.source) < 30_000
 
 
-def test_nobody_reads_another_name(out: Path) -> None:
+def test_nobody_reads_another_name(out):
     found = places(out)
     names = ["late", "set", "broken", "wrong", "é漢字", "O'Neil", "אבי כהן", "nothing handed in"]
     for mine in names:
@@ -176,7 +172,7 @@ def test_nobody_reads_another_name(out: Path) -> None:
         assert not [link for link in page.all("a") if not str(link["href"]).startswith("#")], mine
 
 
-def test_what_is_handed_out_has_nothing_hidden(out: Path) -> None:
+def test_what_is_handed_out_has_nothing_hidden(out):
     found = places(out)
     for name, path in found.items():
         if name == "wrong":
@@ -196,7 +192,7 @@ def test_what_is_handed_out_has_nothing_hidden(out: Path) -> None:
         assert not [secret for secret in SECRETS[:2] if secret in read_page(out / name).tables], name
 
 
-def test_every_number_of_the_class_page_is_the_gradebooks(out: Path, results: Results) -> None:
+def test_every_number_of_the_class_page_is_the_gradebooks(out, results):
     page = read_page(out / "report.html")
     everything = list(results.all())
     titles = {item.id: item.title for item in results.exercises()}
@@ -228,7 +224,7 @@ def test_every_number_of_the_class_page_is_the_gradebooks(out: Path, results: Re
     }
 
 
-def test_pass_rates_and_diagnoses_are_counted_per_student(out: Path, results: Results) -> None:
+def test_pass_rates_and_diagnoses_are_counted_per_student(out, results):
     page = read_page(out / "report.html")
     graded = [item.verdict for item in results.all(exercise="doubling") if item.verdict.state == "graded"]
     right = sum(item.checks[1].status is Status.PASS for item in graded)
@@ -252,7 +248,7 @@ def test_pass_rates_and_diagnoses_are_counted_per_student(out: Path, results: Re
     ]  # fmt: skip
 
 
-def test_the_histogram_counts_everybody_with_a_grade_once(out: Path, results: Results) -> None:
+def test_the_histogram_counts_everybody_with_a_grade_once(out, results):
     drawings = [str(item.get("aria-label")) for item in read_page(out / "report.html").all("svg")]
     for name in ("doubling", "quiz"):
         scored = [
@@ -267,7 +263,7 @@ def test_the_histogram_counts_everybody_with_a_grade_once(out: Path, results: Re
         assert counts == [len(scored)]
 
 
-def test_the_list_of_students_has_the_scores_of_the_table(out: Path) -> None:
+def test_the_list_of_students_has_the_scores_of_the_table(out):
     rows = read_page(out / "students.html").tables["Students and their scores"]
     assert rows[0] == ["Page", "Student", "Doubling, of 10", "Halving, of 2", "Quiz, of 5"]
     found = places(out)
@@ -281,7 +277,7 @@ def test_the_list_of_students_has_the_scores_of_the_table(out: Path) -> None:
     assert by_name["broken"][2] == "none fault of the grader"
 
 
-def test_each_check_on_a_page_has_its_points_of_the_run(tmp_path: Path) -> None:
+def test_each_check_on_a_page_has_its_points_of_the_run(tmp_path):
     checks = (check("free", points=0.0), check("paid", hidden=True, points=2.0))
     with make_book(tmp_path, {"ada": verdict(*checks)}):
         pass
@@ -292,7 +288,7 @@ def test_each_check_on_a_page_has_its_points_of_the_run(tmp_path: Path) -> None:
     assert "The title of paid 2 of 2 points, hidden check" in words
 
 
-def test_a_page_has_the_score_that_counts_and_why(out: Path) -> None:
+def test_a_page_has_the_score_that_counts_and_why(out):
     found = places(out)
     late = " ".join(read_page(out / found["late"]).pieces)
     assert "8 of 10 points : passed, 2 points off for lateness." in late
@@ -312,7 +308,7 @@ def test_a_page_has_the_score_that_counts_and_why(out: Path) -> None:
     assert "There is none." in refused
 
 
-def test_a_function_that_is_not_written_is_one_finding_and_no_mistake(tmp_path: Path) -> None:
+def test_a_function_that_is_not_written_is_one_finding_and_no_mistake(tmp_path):
     """What is hidden of it too; three hidden checks of which only the same is said are one as well."""
     raised = {"status": Status.ERROR, "input": None, "expected": None, "actual": None, "stdout": None}
     unwritten = {**raised, "diagnosis": "NOT_IMPLEMENTED", "message": "Not yet.", "help": "Write it."}
@@ -333,7 +329,7 @@ def test_a_function_that_is_not_written_is_one_finding_and_no_mistake(tmp_path: 
     assert [words in report for words in ("Write it.", "Add it to itself.")] == [False, True]
 
 
-def test_overrides_late_and_who_could_not_be_graded_are_listed(out: Path, results: Results) -> None:
+def test_overrides_late_and_who_could_not_be_graded_are_listed(out, results):
     page = read_page(out / "report.html")
     refused = [item for item in results.all() if item.verdict.error is not None and item.result.number]
     assert len(page.tables["One by one"]) == len(refused) + 1
@@ -350,7 +346,7 @@ def test_overrides_late_and_who_could_not_be_graded_are_listed(out: Path, result
     assert f"course grade rerun {out}" in page.text
 
 
-def test_the_policy_lets_one_script_run_and_loads_nothing(out: Path) -> None:
+def test_the_policy_lets_one_script_run_and_loads_nothing(out):
     digest_ = base64.b64encode(hashlib.sha256(script().encode()).digest()).decode()
     for name, scripted in (("report.html", True), ("students.html", True), ("students/1.html", False)):
         page = read_page(out / name)
@@ -365,7 +361,7 @@ def test_the_policy_lets_one_script_run_and_loads_nothing(out: Path) -> None:
         assert not re.search(r"https?:|//[a-z]|url\(|@import", page.source.replace(script(), ""))
 
 
-def test_a_second_export_leaves_no_page_of_somebody_else(tmp_path: Path) -> None:
+def test_a_second_export_leaves_no_page_of_somebody_else(tmp_path):
     with make_book(tmp_path, {f"student {at}": RIGHT for at in range(4)}) as book:
         export(Results(book), "html", tmp_path, None, ALL)
         mine = tmp_path / "students" / "77.html"
@@ -382,7 +378,7 @@ def test_a_second_export_leaves_no_page_of_somebody_else(tmp_path: Path) -> None
     assert (written.rows, written.unmatched) == (2, ["student 2", "student 3"])
 
 
-def test_the_page_goes_where_it_is_told(tmp_path: Path) -> None:
+def test_the_page_goes_where_it_is_told(tmp_path):
     with make_book(tmp_path / "out", {"ada": RIGHT}) as book:
         results = Results(book)
         results.roster = Roster((Person("ada", "Ada Lovelace", "ada@x.org", section="B"),))
@@ -408,9 +404,7 @@ def test_the_page_goes_where_it_is_told(tmp_path: Path) -> None:
         ("gradescope", "gradescope/index.csv"), ("gradescope", "gradescope/00001.json"),
     ],
 )  # fmt: skip
-def test_nothing_is_replaced_that_no_export_to_this_page_made(
-    tmp_path: Path, target: str, there: str
-) -> None:
+def test_nothing_is_replaced_that_no_export_to_this_page_made(tmp_path, target, there):
     web, name = tmp_path / "web", "gradescope" if target == "gradescope" else "html"
     with make_book(tmp_path / "out", {"ada": RIGHT}) as book:
         results = Results(book)
@@ -431,7 +425,7 @@ def test_nothing_is_replaced_that_no_export_to_this_page_made(
             export(results, name, tmp_path / "out", tmp_path / "new" / target, ALL)
 
 
-def test_the_class_page_does_not_grow_with_the_class(tmp_path: Path) -> None:
+def test_the_class_page_does_not_grow_with_the_class(tmp_path):
     """Lists stop; whoever is not listed is counted."""
     sizes = {}
     with make_book(tmp_path, {}) as book:
@@ -455,7 +449,7 @@ def test_the_class_page_does_not_grow_with_the_class(tmp_path: Path) -> None:
     assert sizes[10 * MOST_ROWS] < 2 * sizes[MOST_ROWS] < 500_000
 
 
-def test_a_class_of_which_nothing_could_be_graded_has_a_page(tmp_path: Path) -> None:
+def test_a_class_of_which_nothing_could_be_graded_has_a_page(tmp_path):
     problem = Problem("syntax_error", "line 1: `def f(:`", "Look `there`.")
     with make_book(tmp_path, {"ada": verdict(state="ungradable", error=problem)}) as book:
         export(Results(book), "html", tmp_path, None, ALL)
@@ -465,7 +459,7 @@ def test_a_class_of_which_nothing_could_be_graded_has_a_page(tmp_path: Path) -> 
     assert "def f(:" in page.pieces
 
 
-def test_what_is_no_markup_becomes_none() -> None:
+def test_what_is_no_markup_becomes_none():
     hostile = 'a\u202eb\x1b<b title="&">'
     drawn = macro("charts", "bar_rows", [(hostile, 1, 2)], hostile)
     shown = "a\\u202eb\\x1b&lt;b title=&#34;&amp;&#34;&gt;"
@@ -485,13 +479,13 @@ def test_what_is_no_markup_becomes_none() -> None:
     st.lists(st.floats(0, 120) | st.integers(0, 100).map(float), max_size=60),
     st.sampled_from([2.0, 10.0, 100.0]),
 )
-def test_every_score_is_in_one_bar(scores: list[float], most: float) -> None:
+def test_every_score_is_in_one_bar(scores, most):
     bins, each = score_bins(scores, most)
     assert sum(item.count for item in bins) == len(scores)
     assert len(bins) == (most + 1 if each else 10)
 
 
-def test_whole_scores_of_few_points_have_a_bar_each() -> None:
+def test_whole_scores_of_few_points_have_a_bar_each():
     bins, each = score_bins([0, 3, 5, 5, 5], 5.0)
     assert each
     assert [(item.label, item.count) for item in bins] == [
@@ -500,7 +494,7 @@ def test_whole_scores_of_few_points_have_a_bar_each() -> None:
     assert mark_of(0.8, 5.0, each=True) == 4, "the line stands left of the first score that passes"
 
 
-def test_a_score_at_the_pass_mark_stands_right_of_its_line() -> None:
+def test_a_score_at_the_pass_mark_stands_right_of_its_line():
     bins, each = score_bins([69.9, 70.0, 100.0], 100.0)
     assert not each
     assert [item.count for item in bins] == [0, 0, 0, 0, 0, 0, 1, 1, 0, 1]
@@ -508,21 +502,21 @@ def test_a_score_at_the_pass_mark_stands_right_of_its_line() -> None:
 
 
 @given(st.lists(st.floats(0, 1e4), min_size=1, max_size=50))
-def test_every_time_is_in_one_bar(seconds: list[float]) -> None:
+def test_every_time_is_in_one_bar(seconds):
     bins = duration_bins(seconds)
     assert sum(item.count for item in bins) == len(seconds)
     assert bins[0].count
     assert bins[-1].count
 
 
-def test_only_everything_is_a_hundred_percent() -> None:
+def test_only_everything_is_a_hundred_percent():
     shares = [(0, 300), (1, 300), (150, 300), (299, 300), (300, 300), (0, 0)]
     assert [percent(*share) for share in shares] == [
         "0 %", "under 1 %", "50 %", "over 99 %", "100 %", "–",
     ]  # fmt: skip
 
 
-def test_bars_are_as_high_as_their_counts() -> None:
+def test_bars_are_as_high_as_their_counts():
     bins, _ = score_bins([5.0] * 30 + [95.0] * 10, 100.0)
     page = Page(macro("charts", "histogram", bins, "Scores", "%", last="100", mark=(7.0, "pass mark")))
     heights = [float(item["height"] or 0) for item in page.all("rect")]
@@ -532,7 +526,7 @@ def test_bars_are_as_high_as_their_counts() -> None:
     assert page.faults == []
 
 
-def test_no_bar_leaves_its_track() -> None:
+def test_no_bar_leaves_its_track():
     drawing = macro(
         "charts",
         "bar_rows",
@@ -544,7 +538,7 @@ def test_no_bar_leaves_its_track() -> None:
     assert "15 of 10" in Page(drawing).pieces
 
 
-def test_times_are_written_as_a_person_reads_them() -> None:
+def test_times_are_written_as_a_person_reads_them():
     assert [duration(value) for value in (0.0004, 0.0123, 0.9, 1.234, 75.0)] == [
         "0.4 ms", "12 ms", "900 ms", "1.23 s", "75 s",
     ]  # fmt: skip

@@ -3,9 +3,6 @@
 import contextlib
 import shutil
 import subprocess
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -33,12 +30,12 @@ _COPY = _ORIGINAL.replace("x", "number").replace("y", "value")
 
 
 @pytest.fixture(scope="module")
-def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
+def axe(tmp_path_factory):
     return axe_core(tmp_path_factory.mktemp("axe"))
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
+def browser():
     if CHROMIUM is None:
         pytest.skip("Chromium is missing")
     reason = "playwright is missing: pip install 'physics-sim-course[dev]'"
@@ -50,7 +47,7 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("pages")
     verdicts = {"0 wrong": WRONG, "1 late": RIGHT, "2 broken": BROKEN, "3 set": HALF}
     verdicts |= {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(HOSTILE)}
@@ -69,7 +66,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def likeness() -> Similar:
+def likeness():
     """Two copies under hostile names, and what could not be read."""
     with contextlib.closing(Parser()) as parse:
         one, two = (
@@ -84,7 +81,7 @@ def likeness() -> Similar:
 
 @pytest.mark.parametrize("name", _PAGES)
 @pytest.mark.parametrize(("width", "scheme"), _SCREENS)
-def test_axe_finds_nothing(browser: Any, axe: str, folder: Path, name: str, width: int, scheme: str) -> None:
+def test_axe_finds_nothing(browser, axe, folder, name, width, scheme):
     context = browser.new_context(
         viewport={"width": width, "height": 900}, color_scheme=scheme, bypass_csp=True
     )
@@ -102,12 +99,12 @@ def test_axe_finds_nothing(browser: Any, axe: str, folder: Path, name: str, widt
 
 
 @pytest.mark.parametrize("name", _PAGES)
-def test_a_page_asks_for_nothing_and_fits_a_phone(browser: Any, folder: Path, name: str) -> None:
+def test_a_page_asks_for_nothing_and_fits_a_phone(browser, folder, name):
     """As it is, its policy in force: no message, no request beside the file, no sideways scrolling."""
     context = browser.new_context(viewport={"width": 390, "height": 844})
     page = context.new_page()
-    said: list[str] = []
-    asked: list[str] = []
+    said = []
+    asked = []
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
     page.on("request", lambda request: asked.append(request.url))
@@ -124,7 +121,7 @@ def test_a_page_asks_for_nothing_and_fits_a_phone(browser: Any, folder: Path, na
     assert cut == [], "no column of a table lies beside the screen"
 
 
-def test_tables_sort_and_filter_by_keyboard(browser: Any, folder: Path) -> None:
+def test_tables_sort_and_filter_by_keyboard(browser, folder):
     page = browser.new_page()
     page.goto((folder / "students.html").as_uri())
     page.keyboard.press("Tab")
@@ -143,7 +140,7 @@ def test_tables_sort_and_filter_by_keyboard(browser: Any, folder: Path) -> None:
     page.close()
 
 
-def printed(browser: Any, path: Path, tmp_path: Path, prepare: str = "") -> list[str]:
+def printed(browser, path, tmp_path, prepare=""):
     """The text of each sheet of A4."""
     pdftotext = shutil.which("pdftotext")
     if pdftotext is None:
@@ -159,7 +156,7 @@ def printed(browser: Any, path: Path, tmp_path: Path, prepare: str = "") -> list
     return done.stdout.decode("utf-8").split("\f")[:-1]
 
 
-def test_a_long_table_has_its_headings_on_every_sheet(browser: Any, folder: Path, tmp_path: Path) -> None:
+def test_a_long_table_has_its_headings_on_every_sheet(browser, folder, tmp_path):
     many = (
         "for (const row of [...document.querySelectorAll('tbody tr')])"
         " for (let n = 0; n < 4; n++) row.after(row.cloneNode(true))"
@@ -175,7 +172,7 @@ def test_a_long_table_has_its_headings_on_every_sheet(browser: Any, folder: Path
             assert not sheet.strip().endswith(("Points earned", "Students", "Passed")), sheet
 
 
-def test_of_similar_submissions_what_is_open_is_printed(browser: Any, folder: Path, tmp_path: Path) -> None:
+def test_of_similar_submissions_what_is_open_is_printed(browser, folder, tmp_path):
     """Following the link of a pair opens it."""
     text = "\n".join(printed(browser, folder / "similar.html", tmp_path))
     assert "97" in text
@@ -195,7 +192,7 @@ def test_of_similar_submissions_what_is_open_is_printed(browser: Any, folder: Pa
     assert "\n".join(sheets).count("def double(x)") == 1
 
 
-def test_a_students_sheet_is_not_left_empty(browser: Any, folder: Path, tmp_path: Path) -> None:
+def test_a_students_sheet_is_not_left_empty(browser, folder, tmp_path):
     """What does not fit on the first sheet is begun there."""
     sheets = printed(browser, folder / "students" / "1.html", tmp_path)
     assert len(sheets) > 1

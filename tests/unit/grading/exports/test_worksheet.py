@@ -3,12 +3,9 @@
 import csv
 import io
 import shutil
-from pathlib import Path
-from typing import Any
 
 import pytest
 
-from course.catalog.load import Catalog
 from course.errors import UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
@@ -32,18 +29,18 @@ SHEET = [
 ]
 
 
-def write(path: Path, rows: list[list[str]], headings: list[str] = HEADINGS) -> Path:
+def write(path, rows, headings=HEADINGS):
     text = io.StringIO(newline="")
     csv.writer(text).writerows([headings, *rows])
     path.write_bytes(text.getvalue().encode())
     return path
 
 
-def cells_of(path: Path) -> list[list[str]]:
+def cells_of(path):
     return list(csv.reader(io.StringIO(path.read_bytes().decode(), newline="")))
 
 
-def taken_by_moodle(path: Path, most: float) -> dict[str, tuple[float | None, str]]:
+def taken_by_moodle(path, most):
     """Grades and feedback that Moodle takes out of a worksheet, after its own reader.
 
     The three columns must be there and all rows be as long as the first; a row is found by what follows the
@@ -55,7 +52,7 @@ def taken_by_moodle(path: Path, most: float) -> dict[str, tuple[float | None, st
     head, *rows = read_by_php(path.read_bytes().decode("utf-8"))
     assert {"Identifier", "Grade", "Last modified (grade)"} <= set(head)
     assert {len(row) for row in rows} == {len(head)}
-    found: dict[str, tuple[float | None, str]] = {}
+    found = {}
     for row in (dict(zip(head, cells, strict=True)) for cells in rows):
         assert row["Identifier"].startswith("Participant ")
         number = row["Identifier"][len("Participant ") :]
@@ -68,7 +65,7 @@ def taken_by_moodle(path: Path, most: float) -> dict[str, tuple[float | None, st
 
 
 @pytest.fixture(scope="module")
-def out(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog) -> Path:
+def out(tmp_path_factory, catalog):
     folder = tmp_path_factory.mktemp("moodle")
     for name in ("Ada Lovelace_101", "Grace Hopper_103", "Cy É_104"):
         module = "doubling.py" if name != "Cy É_104" else "hw.py"
@@ -81,13 +78,13 @@ def out(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog) -> Path:
     return folder / "out"
 
 
-def filled(out: Path, sheet: Path, to: Path, **more: Any) -> Any:
+def filled(out, sheet, to, **more):
     with open_results(out) as results:
         options = ExportOptions(worksheet=sheet, zeros=True, **more)
         return export(results, "moodle-worksheet", out, to, options)
 
 
-def test_it_is_filled_in_and_everything_else_is_as_it_came(tmp_path: Path, out: Path) -> None:
+def test_it_is_filled_in_and_everything_else_is_as_it_came(tmp_path, out):
     """Columns, their order and every cell but two are Moodle's, and who has no grade of ours keeps both.
 
     Source: moodle/mod/assign/gradingtable.php, the columns of a download; MoodleDocs, "Using Assignment",
@@ -115,7 +112,7 @@ def test_it_is_filled_in_and_everything_else_is_as_it_came(tmp_path: Path, out: 
 
 
 @pytest.mark.parametrize("reason", ['said "x\\"', "a path, C:\\"])
-def test_feedback_with_backslashes_is_one_cell_to_moodle(tmp_path: Path, out: Path, reason: str) -> None:
+def test_feedback_with_backslashes_is_one_cell_to_moodle(tmp_path, out, reason):
     """A cell that ended in a backslash took the next one with it, and Moodle refused the whole file."""
     shutil.copytree(out, tmp_path / "out")
     with open_results(tmp_path / "out", writing=True) as results:
@@ -126,7 +123,7 @@ def test_feedback_with_backslashes_is_one_cell_to_moodle(tmp_path: Path, out: Pa
     assert feedback.replace("\\ ", "\\").endswith(reason)
 
 
-def test_missing_work_is_a_zero_only_as_told(tmp_path: Path, out: Path) -> None:
+def test_missing_work_is_a_zero_only_as_told(tmp_path, out):
     sheet = write(tmp_path / "sheet.csv", SHEET)
     filled(out, sheet, tmp_path / "kept.csv", missing="zero")
     assert taken_by_moodle(tmp_path / "kept.csv", 100.0)["102"] == (None, "See me, Bob")
@@ -134,7 +131,7 @@ def test_missing_work_is_a_zero_only_as_told(tmp_path: Path, out: Path) -> None:
     assert taken_by_moodle(tmp_path / "zero.csv", 100.0)["102"][0] == 0.0
 
 
-def with_cells(grade: str, feedback: str) -> list[list[str]]:
+def with_cells(grade, feedback):
     """The sheet as a teacher may have left it, with something in Ada's row."""
     return [[*SHEET[0][:4], grade, *SHEET[0][5:9], feedback], *SHEET[1:]]
 
@@ -143,9 +140,7 @@ def with_cells(grade: str, feedback: str) -> list[list[str]]:
     ("grade", "feedback"),
     [("55.00", "Seen in the oral: fine"), ("55,0", ""), ("", "See me"), ("100", "See me")],
 )
-def test_a_teachers_grade_and_feedback_stay_and_are_listed(
-    tmp_path: Path, out: Path, grade: str, feedback: str
-) -> None:
+def test_a_teachers_grade_and_feedback_stay_and_are_listed(tmp_path, out, grade, feedback):
     sheet = write(tmp_path / "sheet.csv", with_cells(grade, feedback))
     written = filled(out, sheet, tmp_path / "back.csv")
     rows = cells_of(tmp_path / "back.csv")
@@ -159,7 +154,7 @@ def test_a_teachers_grade_and_feedback_stay_and_are_listed(
     assert taken_by_moodle(tmp_path / "new.csv", 100.0)["101"][0] == 100.0
 
 
-def test_a_sheet_that_has_our_own_grades_is_filled_in_again(tmp_path: Path, out: Path) -> None:
+def test_a_sheet_that_has_our_own_grades_is_filled_in_again(tmp_path, out):
     """Moodle gives back what was uploaded, with two digits after the point."""
     filled(out, write(tmp_path / "sheet.csv", SHEET), tmp_path / "back.csv")
     head, *rows = cells_of(tmp_path / "back.csv")
@@ -168,7 +163,7 @@ def test_a_sheet_that_has_our_own_grades_is_filled_in_again(tmp_path: Path, out:
     assert (written.rows, written.kept) == (2, [])
 
 
-def test_the_grade_is_on_moodles_scale_with_its_comma(tmp_path: Path, out: Path) -> None:
+def test_the_grade_is_on_moodles_scale_with_its_comma(tmp_path, out):
     at = HEADINGS.index("Maximum Grade")
     sheet = write(tmp_path / "s.csv", [[*row[:at], "12,50", *row[at + 1 :]] for row in SHEET])
     filled(out, sheet, tmp_path / "back.csv")
@@ -176,7 +171,7 @@ def test_the_grade_is_on_moodles_scale_with_its_comma(tmp_path: Path, out: Path)
     assert taken_by_moodle(tmp_path / "back.csv", 12.5)["101"][0] == 12.5
 
 
-def test_an_anonymous_worksheet_calls_its_rows_as_the_download_calls_its_folders(tmp_path: Path) -> None:
+def test_an_anonymous_worksheet_calls_its_rows_as_the_download_calls_its_folders(tmp_path):
     rows = [[row[0], *row[3:]] for row in SHEET]
     people = read_roster(write(tmp_path / "s.csv", rows, [HEADINGS[0], *HEADINGS[3:]])).people
     assert [person.student for person in people] == [f"Participant_{number}" for number in range(101, 105)]
@@ -190,9 +185,7 @@ def test_an_anonymous_worksheet_calls_its_rows_as_the_download_calls_its_folders
         (HEADINGS, [SHEET[0][:-1]], "another number of cells"),
     ],
 )
-def test_what_moodle_would_not_take_back_is_refused(
-    tmp_path: Path, out: Path, headings: list[str], rows: list[list[str]], words: str
-) -> None:
+def test_what_moodle_would_not_take_back_is_refused(tmp_path, out, headings, rows, words):
     sheet = write(tmp_path / "s.csv", rows, headings)
     with pytest.raises(UsageError, match=words.replace("(", r"\(").replace(")", r"\)")):
         filled(out, sheet, tmp_path / "back.csv", partial=True)

@@ -2,13 +2,12 @@
 
 import datetime as dt
 import importlib.util
-from pathlib import Path
 
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.grading.gradebook.records import PlatformIdentity
-from course.grading.intake.downloads import ClassList, Place, class_list, is_folder_meant
+from course.grading.intake.downloads import Place, class_list, is_folder_meant
 from course.grading.intake.students import read_student
 from tests.unit.grading.intake.test_intake import archive
 from tests.unit.grading.made import put
@@ -16,14 +15,14 @@ from tests.unit.grading.made import put
 SOURCE = b"def double(x):\n    return 2 * x\n"
 
 
-def lay(folder: Path, *names: str) -> None:
+def lay(folder, *names):
     for name in names:
         put(folder / name, SOURCE + name.encode())
 
 
-def graded(found: ClassList, exercise) -> dict[str, bytes | str]:
+def graded(found, exercise):
     """Student -> what would be graded, or the code of why not."""
-    answers: dict[str, bytes | str] = {}
+    answers = {}
     for student in found.students:
         (entry,) = read_student(student, [exercise], required=True)
         if entry.submission is not None:
@@ -33,7 +32,7 @@ def graded(found: ClassList, exercise) -> dict[str, bytes | str]:
     return answers
 
 
-def test_a_canvas_download_is_a_class(tmp_path: Path, doubling) -> None:
+def test_a_canvas_download_is_a_class(tmp_path, doubling):
     lay(
         tmp_path,
         "lovelaceada_101_9001_doubling.py",
@@ -68,7 +67,7 @@ def test_a_canvas_download_is_a_class(tmp_path: Path, doubling) -> None:
     assert by_name["lovelaceada_101"].identity == PlatformIdentity("canvas", "101", "lovelaceada")
 
 
-def test_one_canvas_user_with_two_names_is_nobody(tmp_path: Path) -> None:
+def test_one_canvas_user_with_two_names_is_nobody(tmp_path):
     lay(tmp_path, "ada_101_1_doubling.py", "eve_101_2_doubling.py", "bob_102_3_doubling.py")
     found = class_list(tmp_path)
     assert [student.name for student in found.students] == ["bob_102"]
@@ -76,7 +75,7 @@ def test_one_canvas_user_with_two_names_is_nobody(tmp_path: Path) -> None:
     assert "'ada' and 'eve'" in found.unrecognised[0]
 
 
-def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> None:
+def test_a_moodle_download_with_folders_is_a_class(tmp_path, doubling):
     lay(
         tmp_path,
         "Ada Lovelace_11_assignsubmission_file/doubling.py",
@@ -98,9 +97,7 @@ def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> 
     assert found.students[0].identity == PlatformIdentity("moodle", "11", "Ada Lovelace")
 
 
-def test_a_moodle_download_without_folders_is_a_class_and_file_names_forge_nobody(
-    tmp_path: Path, doubling
-) -> None:
+def test_a_moodle_download_without_folders_is_a_class_and_file_names_forge_nobody(tmp_path, doubling):
     lay(
         tmp_path,
         "Ada_11_assignsubmission_file_doubling.py",
@@ -150,13 +147,13 @@ submission_904:
 """
 
 
-def gradescope(folder: Path, metadata: str = METADATA) -> None:
+def gradescope(folder, metadata=METADATA):
     numbers = (900, 901, 902, 903, 904, 905)
     lay(folder, *(f"submission_{number}/doubling.py" for number in numbers))
     (folder / "submission_metadata.yml").write_text(metadata, "utf-8")
 
 
-def test_a_gradescope_download_is_a_class(tmp_path: Path, doubling) -> None:
+def test_a_gradescope_download_is_a_class(tmp_path, doubling):
     pytest.importorskip("yaml")
     gradescope(tmp_path)
     found = class_list(tmp_path)
@@ -179,7 +176,7 @@ def test_a_gradescope_download_is_a_class(tmp_path: Path, doubling) -> None:
 @pytest.mark.parametrize(
     "metadata", ["[1, 2", "- 1", "1: x", "!!python/object/apply:os.getcwd []", "&a [*a]"]
 )
-def test_metadata_that_gradescope_does_not_write_is_refused(tmp_path: Path, metadata: str) -> None:
+def test_metadata_that_gradescope_does_not_write_is_refused(tmp_path, metadata):
     pytest.importorskip("yaml")
     gradescope(tmp_path, metadata)
     with pytest.raises(UsageError) as caught:
@@ -187,9 +184,7 @@ def test_metadata_that_gradescope_does_not_write_is_refused(tmp_path: Path, meta
     assert caught.value.code == "bad_metadata"
 
 
-def test_without_a_reader_of_metadata_the_command_that_installs_it_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_a_reader_of_metadata_the_command_that_installs_it_is_named(tmp_path, monkeypatch):
     gradescope(tmp_path)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(MissingCapabilityError, match="pyyaml") as caught:
@@ -207,9 +202,7 @@ def test_without_a_reader_of_metadata_the_command_that_installs_it_is_named(
         (["submission_metadata.yml", "submission_900/doubling.py", "bob/doubling.py"], "bob"),
     ],
 )
-def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
-    tmp_path: Path, names: list[str], odd: str
-) -> None:
+def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(tmp_path, names, odd):
     lay(tmp_path, *names)
     layout = "moodle" if "assign" in names[0] else "canvas"
     if "metadata" in names[0]:
@@ -227,7 +220,7 @@ def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
     assert found.unrecognised[0].startswith(repr(odd))
 
 
-def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path: Path) -> None:
+def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path):
     students = ["..evil", "; rm -rf ~"]
     lay(tmp_path, *(f"{name}/doubling.py" for name in students), "bob.zip", "Cy.IPYNB", "doubling.py")
     lay(tmp_path, "x_1_2_notes.txt", "readme.txt", "class.csv", ".git/doubling.py")
@@ -237,7 +230,7 @@ def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path: Path) ->
     assert listed == ["'Cy.IPYNB'", "'bob.zip'", "'doubling.py'"]
 
 
-def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path: Path) -> None:
+def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path):
     with pytest.raises(NotFoundError, match="no submissions"):
         class_list(tmp_path)
     with pytest.raises(UsageError, match="--layout"):
@@ -245,7 +238,7 @@ def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path: Path) -
 
 
 @pytest.mark.parametrize("folder", ["warm-ups/error-left", "error-left", "Error-Left (1)", "."])
-def test_a_warm_up_is_found_in_its_folder_with_or_without_the_one_above(tmp_path: Path, folder: str) -> None:
+def test_a_warm_up_is_found_in_its_folder_with_or_without_the_one_above(tmp_path, folder):
     path = tmp_path / folder / "error_left.py"
     put(path, b"x = 1\n")
     assert Place(tmp_path).find("error_left.py", "warm-ups/error-left") == [path]

@@ -8,19 +8,15 @@ import stat
 import subprocess
 import sys
 import zipfile
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import Any
 
 import msgspec
 import pytest
 
-from course.catalog.models import Exercise
 from course.errors import NotFoundError, UngradableError
 from course.grading.intake import archives, students
 from course.grading.intake.archives import Reader, RefusedError
 from course.grading.intake.downloads import Place, Student, class_list
-from course.grading.intake.students import Entry, read_student
+from course.grading.intake.students import read_student
 from course.grading.quiz import grade_quiz
 from course.handed_in.limits import MAX_CELLS, MAX_DEEP, MAX_FILE, MAX_FILES, MAX_NOTEBOOK, MAX_PATH
 from course.handed_in.notebook import MAX_NOTES, notebook_source
@@ -33,12 +29,12 @@ from tests.unit.grading.made import notebook, put, zipped
 SOURCE = b"def double(x):\n    return 2 * x\n"
 
 
-def entry(folder: Path, exercise: Exercise, *, required: bool = True) -> Entry:
+def entry(folder, exercise, *, required=True):
     (found,) = read_student(Student("ada", Place(folder)), [exercise], required=required)
     return found
 
 
-def reason(folder: Path, exercise: Exercise) -> str:
+def reason(folder, exercise):
     found = entry(folder, exercise)
     assert found.submission is None
     assert found.problem.message
@@ -46,7 +42,7 @@ def reason(folder: Path, exercise: Exercise) -> str:
     return found.problem.code
 
 
-def archive(path: Path, members: dict[str, bytes], *, manifest: Any = (), mode: int = 0o100644) -> Path:
+def archive(path, members, *, manifest=(), mode=0o100644):
     """As ``submit`` makes it; ``manifest``: what else its own file says, or all of it, or None for none."""
     sums = {name: hashlib.sha256(content).hexdigest() for name, content in members.items()}
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as target:
@@ -62,7 +58,7 @@ def archive(path: Path, members: dict[str, bytes], *, manifest: Any = (), mode: 
 
 
 FOUND = "doubling/doubling.py"
-LAID: dict[str, Callable[[Path], object]] = {
+LAID = {
     "a module": lambda folder: (folder / "doubling.py").write_bytes(SOURCE),
     "a module in its folder": lambda folder: put(folder / FOUND, SOURCE),
     "a zip made by submit": lambda folder: archive(folder / "mine.zip", {FOUND: SOURCE}),
@@ -85,7 +81,7 @@ LAID: dict[str, Callable[[Path], object]] = {
 
 
 @pytest.mark.parametrize("what", LAID)
-def test_a_module_is_found_wherever_it_may_be(tmp_path: Path, doubling: Exercise, what: str) -> None:
+def test_a_module_is_found_wherever_it_may_be(tmp_path, doubling, what):
     LAID[what](tmp_path)
     found = entry(tmp_path, doubling)
     files = {name: text.strip() for name, text in found.submission.files.items()}
@@ -93,18 +89,14 @@ def test_a_module_is_found_wherever_it_may_be(tmp_path: Path, doubling: Exercise
     assert list(files) == ["notebook.json"] * ("notebook" in what)
 
 
-def test_without_a_file_it_is_ungradable_if_asked_for_and_else_not_submitted(
-    tmp_path: Path, doubling: Exercise
-) -> None:
+def test_without_a_file_it_is_ungradable_if_asked_for_and_else_not_submitted(tmp_path, doubling):
     assert reason(tmp_path, doubling) == "no_file"
     quiet = entry(tmp_path, doubling, required=False)
     assert quiet.submission is None
     assert quiet.problem is None
 
 
-def test_a_notebook_larger_than_a_module_may_be_is_read_past_its_outputs(
-    tmp_path: Path, doubling: Exercise
-) -> None:
+def test_a_notebook_larger_than_a_module_may_be_is_read_past_its_outputs(tmp_path, doubling):
     large = json.loads(notebook(SOURCE.decode()))
     large["cells"][0]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": "x" * (30 << 20)}]
     (tmp_path / "doubling.ipynb").write_text(json.dumps(large), "utf-8")
@@ -113,7 +105,7 @@ def test_a_notebook_larger_than_a_module_may_be_is_read_past_its_outputs(
     assert reason(tmp_path, doubling) == "too_large"
 
 
-def test_a_module_and_a_notebook_are_never_guessed_between(tmp_path: Path, doubling: Exercise) -> None:
+def test_a_module_and_a_notebook_are_never_guessed_between(tmp_path, doubling):
     (tmp_path / "doubling.ipynb").write_bytes(notebook(SOURCE.decode()))
     (tmp_path / "doubling.py").write_bytes(SOURCE)
     assert reason(tmp_path, doubling) == "ambiguous_files"
@@ -138,8 +130,8 @@ def test_a_module_and_a_notebook_are_never_guessed_between(tmp_path: Path, doubl
     ids=lambda value: str(value)[:20],
 )
 def test_what_is_not_a_plain_file_of_reasonable_size_and_kind_is_refused(
-    tmp_path: Path, doubling: Exercise, name: str, content: bytes | None, code: str
-) -> None:
+    tmp_path, doubling, name, content, code
+):
     if content is None:
         (tmp_path / name).mkdir()
     else:
@@ -148,9 +140,7 @@ def test_what_is_not_a_plain_file_of_reasonable_size_and_kind_is_refused(
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="links and pipes as POSIX has them")
-def test_links_and_pipes_are_refused_and_never_followed_or_waited_for(
-    tmp_path: Path, doubling: Exercise
-) -> None:
+def test_links_and_pipes_are_refused_and_never_followed_or_waited_for(tmp_path, doubling):
     secret = tmp_path / "secret.py"
     secret.write_bytes(SOURCE)
     target = tmp_path / "student" / "doubling.py"
@@ -169,15 +159,15 @@ def test_links_and_pipes_are_refused_and_never_followed_or_waited_for(
     assert reason(linked, doubling) == "symlink"
 
 
-def _bomb(path: Path) -> None:
+def _bomb(path):
     archive(path, {"doubling/doubling.py": b"#" * (4 << 20)})
 
 
-def _many(path: Path) -> None:
+def _many(path):
     archive(path, {f"file{number}.txt": b"" for number in range(MAX_FILES + 1)})
 
 
-def _lying_size(path: Path) -> None:
+def _lying_size(path):
     archive(path, {"doubling/doubling.py": b"#" * (MAX_FILE + 1)}, manifest=None)
     raw = bytearray(path.read_bytes())
     size = (MAX_FILE + 1).to_bytes(4, "little")
@@ -209,16 +199,12 @@ def _lying_size(path: Path) -> None:
         "long path", "link", "nested", "damaged", "empty", "a folder",
     ],
 )  # fmt: skip
-def test_hostile_archives_are_refused(
-    tmp_path: Path, doubling: Exercise, make: Callable[[Path], object]
-) -> None:
+def test_hostile_archives_are_refused(tmp_path, doubling, make):
     make(tmp_path / "mine.zip")
     assert reason(tmp_path, doubling) == "refused_archive"
 
 
-def test_the_versions_at_home_are_told_where_they_mattered_and_nowhere_else(
-    tmp_path: Path, doubling: Exercise
-) -> None:
+def test_the_versions_at_home_are_told_where_they_mattered_and_nowhere_else(tmp_path, doubling):
     written = {"python": "3.13.1", "numpy": "2.9.0"}
     archive(tmp_path / "mine.zip", {FOUND: SOURCE}, manifest={"written_with": written})
     found = entry(tmp_path, doubling)
@@ -250,15 +236,13 @@ def test_the_versions_at_home_are_told_where_they_mattered_and_nowhere_else(
     ],
     ids=lambda value: str(value)[:40],
 )
-def test_a_manifest_that_cannot_be_trusted_is_refused(
-    tmp_path: Path, doubling: Exercise, manifest: Any, code: str
-) -> None:
+def test_a_manifest_that_cannot_be_trusted_is_refused(tmp_path, doubling, manifest, code):
     archive(tmp_path / "mine.zip", {FOUND: SOURCE}, manifest=manifest)
     assert reason(tmp_path, doubling) == code
 
 
 @pytest.mark.skipif(os.name == "nt", reason="file names are text there")
-def test_names_that_are_no_text_stay_apart(tmp_path: Path, doubling: Exercise) -> None:
+def test_names_that_are_no_text_stay_apart(tmp_path, doubling):
     for raw in (b"\xff", b"\\xff"):
         folder = tmp_path / os.fsdecode(raw)
         folder.mkdir()
@@ -269,7 +253,7 @@ def test_names_that_are_no_text_stay_apart(tmp_path: Path, doubling: Exercise) -
         name.encode("utf-8")
 
 
-def test_no_such_class_is_said_plainly(tmp_path: Path) -> None:
+def test_no_such_class_is_said_plainly(tmp_path):
     with pytest.raises(NotFoundError, match="not a folder of submissions"):
         class_list(tmp_path / "nowhere")
 
@@ -280,7 +264,7 @@ _DOUBLE = "def double(x):\n    return 2 * x\n"
 
 
 #: What once took minutes or hours, by size.
-_LARGE: dict[str, Any] = {
+_LARGE = {
     "statements beside a magic word": lambda n: notebook(f"{_DOUBLE}# get_ipython\n" + "x\n" * (10 * n)),
     "escaped quotes": lambda n: notebook(f"%magic\n{_DOUBLE}'" + "\\'" * (20 * n)),
     "magics": lambda n: notebook(_DOUBLE, "%x\n" * (10 * n)),
@@ -292,15 +276,15 @@ _LARGE: dict[str, Any] = {
 
 @pytest.mark.soak
 @pytest.mark.parametrize("kind", _LARGE)
-def test_reading_a_notebook_takes_as_long_as_it_is_long(kind: str, doubling: Exercise) -> None:
-    def reading(size: int) -> Callable[[], object]:
+def test_reading_a_notebook_takes_as_long_as_it_is_long(kind, doubling):
+    def reading(size):
         data = _LARGE[kind](size)
         return lambda: notebook_source(data, doubling)
 
     assert growth(reading, 1000) < LIMIT
 
 
-def test_what_is_left_out_is_told_within_bounds(doubling: Exercise) -> None:
+def test_what_is_left_out_is_told_within_bounds(doubling):
     found = notebook_source(notebook(_DOUBLE, "%magic " + "x" * 500 + "\n" + "%y\n" * 5000), doubling)
     assert len(found.notes) <= MAX_NOTES + 2
     assert any("more lines left out" in note for note in found.notes)
@@ -312,7 +296,7 @@ def test_what_is_left_out_is_told_within_bounds(doubling: Exercise) -> None:
     assert caught.value.code == "too_large"
 
 
-def test_an_escaped_line_end_in_a_string_moves_no_magic() -> None:
+def test_an_escaped_line_end_in_a_string_moves_no_magic():
     from course.handed_in.notebook import typed_cell
 
     cell = typed_cell(1, "a = 'one \\\n two'\n%magic\nb = 1\n")
@@ -321,7 +305,7 @@ def test_an_escaped_line_end_in_a_string_moves_no_magic() -> None:
 
 
 @pytest.fixture
-def strict() -> Iterator[Reader]:
+def strict():
     """With little time and memory, so that a test need not use up what honest files may."""
     found = Reader(cpu_s=1, wall_s=60, memory=512 << 20)
     yield found
@@ -339,7 +323,7 @@ _BOMBS = {
 
 
 @pytest.mark.parametrize("bomb", _BOMBS)
-def test_a_bomb_costs_itself_and_is_named(bomb: str, strict: Reader, doubling: Exercise) -> None:
+def test_a_bomb_costs_itself_and_is_named(bomb, strict, doubling):
     with pytest.raises(RefusedError) as caught:
         strict.notebook(_BOMBS[bomb](), doubling, "bomb.ipynb")
     assert caught.value.problem.code == "unreadable"
@@ -347,9 +331,7 @@ def test_a_bomb_costs_itself_and_is_named(bomb: str, strict: Reader, doubling: E
     assert strict.notebook(notebook(_DOUBLE), doubling, "honest.ipynb")[0].decode().startswith("def double")
 
 
-def test_an_archive_is_read_once_for_all_questions_about_a_student(
-    tmp_path: Path, doubling: Exercise
-) -> None:
+def test_an_archive_is_read_once_for_all_questions_about_a_student(tmp_path, doubling):
     """It was read for each exercise, for the quiz, and for what is left."""
     path = tmp_path / "all.zip"
     manifest = {"format_version": 1, "files": {}, "quiz": [1]}
@@ -367,9 +349,9 @@ def test_an_archive_is_read_once_for_all_questions_about_a_student(
 
 
 def test_what_ends_the_reader_is_not_read_again_and_all_of_a_student_has_one_time(
-    tmp_path: Path, strict: Reader, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[object] = []
+    tmp_path, strict, monkeypatch
+):
+    asked = []
     files = [tmp_path / f"{n}.zip" for n in range(3)]
     for path in files:
         path.write_bytes(zipped({"hw.py": _DOUBLE}))
@@ -385,7 +367,7 @@ def test_what_ends_the_reader_is_not_read_again_and_all_of_a_student_has_one_tim
     assert len(strict.outlines(files[0], (), ())) == 1
 
 
-def test_the_wall_clock_ends_a_reader_that_uses_no_time(doubling: Exercise) -> None:
+def test_the_wall_clock_ends_a_reader_that_uses_no_time(doubling):
     with contextlib.closing(Reader(cpu_s=60, wall_s=1.0)) as impatient:
         impatient.notebook(notebook(_DOUBLE), doubling, "a.ipynb")
         process = impatient._servant._process
@@ -396,25 +378,21 @@ def test_the_wall_clock_ends_a_reader_that_uses_no_time(doubling: Exercise) -> N
         assert process.poll() is not None
 
 
-def test_the_process_that_reads_loads_nothing_that_grades() -> None:
+def test_the_process_that_reads_loads_nothing_that_grades():
     """Each bomb ends one, and the next took three times as long to start."""
     code = "import course.grading.intake.archives, sys; print({'numpy', 'pytest'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
 
 
-def test_more_than_an_answer_may_be_is_not_taken(
-    strict: Reader, doubling: Exercise, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_more_than_an_answer_may_be_is_not_taken(strict, doubling, monkeypatch):
     strict.notebook(notebook(_DOUBLE), doubling, "a.ipynb")
     monkeypatch.setattr(archives, "MAX_ANSWER", 10)
     with pytest.raises(RefusedError, match=r"b\.ipynb"):
         strict.notebook(notebook(_DOUBLE), doubling, "b.ipynb")
 
 
-def test_what_unpacks_a_damaged_archive_raises_as_it_likes(
-    tmp_path: Path, doubling: Exercise, strict: Reader
-) -> None:
+def test_what_unpacks_a_damaged_archive_raises_as_it_likes(tmp_path, doubling, strict):
     """LZMA has an error of its own; that ended the process, and the file had "taken too much time"."""
     path = tmp_path / "m.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_LZMA) as target:
@@ -428,16 +406,14 @@ def test_what_unpacks_a_damaged_archive_raises_as_it_likes(
         assert caught.value.problem.code == "refused_archive"
 
 
-def test_nesting_that_no_parser_follows_costs_one_file_of_an_archive(tmp_path: Path, strict: Reader) -> None:
+def test_nesting_that_no_parser_follows_costs_one_file_of_an_archive(tmp_path, strict):
     path = tmp_path / "m.zip"
     path.write_bytes(zipped({"bomb.py": f"double = {'-' * 6000}1", "mine.py": _DOUBLE}))
     found = {name: functions for name, _, functions, *_ in strict.outlines(path, (), ("double",))}
     assert found == {"bomb.py": (), "mine.py": ("double",)}
 
 
-def test_what_is_said_of_an_archive_is_one_line_whatever_it_is_called(
-    tmp_path: Path, doubling: Exercise, strict: Reader
-) -> None:
+def test_what_is_said_of_an_archive_is_one_line_whatever_it_is_called(tmp_path, doubling, strict):
     """A name that is no text ended the process; a line end in a folder's name was a line of a report."""
     path = tmp_path / "m\udce9.zip"
     path.write_bytes(zipped({"a\n\x1b[2Jb\u202e/doubling.py": _DOUBLE}))
@@ -448,7 +424,7 @@ def test_what_is_said_of_an_archive_is_one_line_whatever_it_is_called(
 
 
 @pytest.mark.parametrize("kind", ["notebooks", "zips", "frames", "scenes", "documents"])
-def test_random_input_meets_words_and_no_fault(kind: str) -> None:
+def test_random_input_meets_words_and_no_fault(kind):
     """A glance: tests/benchmarks/fuzz/run.py runs for as long as it is told."""
     outcomes, faults = run(kind, seed=7, numbers=range(60))
     assert not faults
@@ -459,16 +435,16 @@ def test_random_input_meets_words_and_no_fault(kind: str) -> None:
     "quiz",
     ["[" * 970 + "1" + "]" * 970, '["\\ud800"]', "[1e999, NaN]", f"[{'9' * 4000}]", '{"a": 1}', "true"],
 )
-def test_no_record_of_a_quiz_hurts_whoever_asked(tmp_path: Path, quiz: str) -> None:
+def test_no_record_of_a_quiz_hurts_whoever_asked(tmp_path, quiz):
     """One list a thousand deep ended the run: whoever asks stands deeper than the process that reads."""
     manifest = f'{{"format_version": 1, "files": {{}}, "quiz": {quiz}}}'
     (tmp_path / "ada.zip").write_bytes(zipped({"submission.json": manifest}))
     student = Student("ada", Place(tmp_path))
 
-    def asked(deeper: int) -> Any:
+    def asked(deeper):
         return asked(deeper - 1) if deeper else students.read_quiz(student)[0]
 
     record = asked(200)
     assert isinstance(record, str)
     verdict = grade_quiz(Bank(()), record)
-    assert (verdict.state, verdict.error.code) == ("ungradable", "quiz_record_inconsistent")  # type: ignore[union-attr]
+    assert (verdict.state, verdict.error.code) == ("ungradable", "quiz_record_inconsistent")

@@ -7,17 +7,13 @@ import os
 import re
 import sys
 import tarfile
-from pathlib import Path
-from typing import Any
 
 import pytest
 
-from course.catalog.load import Catalog
-from course.catalog.models import Exercise
 from course.errors import NotFoundError, UngradableError
 from course.grading.intake import students
 from course.grading.intake.downloads import DEEP
-from course.grading.intake.students import Candidate, Entry, found_for
+from course.grading.intake.students import Candidate, found_for
 from course.grading.results.effective import override
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results
@@ -39,18 +35,18 @@ HALF = SOURCE.replace(b"return x\n", b"raise NotImplementedError('later')\n")
 NOTEBOOK = notebook(SOURCE.decode())
 
 
-def lay(folder: Path, student: str = "ada", /, **files: bytes) -> None:
+def lay(folder, student="ada", /, **files):
     for name, content in files.items():
         put(folder / student / name, content)
 
 
-def read(folder: Path, doubling: Exercise, *, required: bool = True) -> Entry:
+def read(folder, doubling, *, required=True):
     (entry,) = read_class(folder, [doubling], required=required)
     return entry
 
 
 #: What is taken without a question -> what the result says of it.
-TAKEN: dict[str, tuple[dict[str, bytes], str]] = {
+TAKEN = {
     "its very name": ({"doubling.py": SOURCE}, ""),
     "letter case": ({"Doubling.PY": SOURCE}, "'Doubling.PY' was taken for doubling.py."),
     "a browser's number": ({"doubling (2).py": SOURCE}, "'doubling (2).py' was taken for doubling.py."),
@@ -93,7 +89,7 @@ TAKEN: dict[str, tuple[dict[str, bytes], str]] = {
 
 
 @pytest.mark.parametrize("how", TAKEN)
-def test_what_is_meant_beyond_doubt_is_taken_and_said(tmp_path: Path, doubling: Exercise, how: str) -> None:
+def test_what_is_meant_beyond_doubt_is_taken_and_said(tmp_path, doubling, how):
     files, said = TAKEN[how]
     lay(tmp_path, **files)
     entry = read(tmp_path, doubling)
@@ -102,9 +98,7 @@ def test_what_is_meant_beyond_doubt_is_taken_and_said(tmp_path: Path, doubling: 
     assert list(entry.notes) == ([said] if said else [])
 
 
-def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(
-    tmp_path: Path, doubling: Exercise
-) -> None:
+def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(tmp_path, doubling):
     """It was looked for among the files of code, was none of them, and the reader ended with a traceback."""
     lay(tmp_path, **{"all.zip": zipped({"doubling.py\\": SOURCE})})
     assert read(tmp_path, doubling).submission is not None
@@ -115,7 +109,7 @@ def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(
 
 
 #: What is asked about -> the code, and the one match there is.
-ASKED: dict[str, tuple[dict[str, bytes], str, str | None]] = {
+ASKED = {
     "another name": ({"homework.py": SOURCE}, "no_file", "homework.py"),
     "another folder": ({"week 3/doubling.py": SOURCE, "a.txt": b"x"}, "no_file", "week 3/doubling.py"),
     "in a zip, another name": (
@@ -142,9 +136,7 @@ ASKED: dict[str, tuple[dict[str, bytes], str, str | None]] = {
 
 
 @pytest.mark.parametrize("how", ASKED)
-def test_what_is_in_doubt_is_listed_with_the_one_match_there_is(
-    tmp_path: Path, doubling: Exercise, how: str
-) -> None:
+def test_what_is_in_doubt_is_listed_with_the_one_match_there_is(tmp_path, doubling, how):
     files, code, match = ASKED[how]
     lay(tmp_path, **files)
     entry = read(tmp_path, doubling)
@@ -154,9 +146,9 @@ def test_what_is_in_doubt_is_listed_with_the_one_match_there_is(
     assert proposed == ([match] if match else [])
 
 
-def in_tar(mode: str, **members: bytes) -> bytes:
+def in_tar(mode, **members):
     buffer = io.BytesIO()
-    with tarfile.open(fileobj=buffer, mode=mode) as archive:  # type: ignore[call-overload]
+    with tarfile.open(fileobj=buffer, mode=mode) as archive:
         for name, content in members.items():
             info = tarfile.TarInfo(name)
             info.size = len(content)
@@ -165,7 +157,7 @@ def in_tar(mode: str, **members: bytes) -> bytes:
 
 
 #: What lies there -> the name that is proposed and can be assigned, and what is said of it.
-ODDLY: dict[str, tuple[dict[str, bytes], str, str]] = {
+ODDLY = {
     "hidden suffix": ({"doubling.py.txt": SOURCE}, "doubling.py.txt", "a text"),
     "text": ({"doubling.txt": SOURCE}, "doubling.txt", "a text"),
     "no suffix": ({"doubling": SOURCE}, "doubling", "a text"),
@@ -196,12 +188,11 @@ ODDLY: dict[str, tuple[dict[str, bytes], str, str]] = {
 
 @pytest.mark.parametrize("how", ODDLY)
 def test_whatever_lies_there_is_named_with_what_it_is_and_assigned_by_its_name(
-    tmp_path: Path, catalog: Catalog, doubling: Exercise, how: str
-) -> None:
+    tmp_path, catalog, doubling, how
+):
     files, match, kind = ODDLY[how]
     lay(tmp_path / "class", **files)
     entry = read(tmp_path / "class", doubling)
-    assert entry.problem is not None
     (one,) = entry.found.candidates
     assert (one.name if one.proposed else "", one.kind) == (match, kind)
     assert quoted(one.name) in entry.problem.message
@@ -221,9 +212,7 @@ def test_whatever_lies_there_is_named_with_what_it_is_and_assigned_by_its_name(
     assert b"def doubl" in content
 
 
-def test_a_notebook_or_a_zip_that_is_called_py_is_read_as_what_it_is(
-    tmp_path: Path, doubling: Exercise
-) -> None:
+def test_a_notebook_or_a_zip_that_is_called_py_is_read_as_what_it_is(tmp_path, doubling):
     for content, kind in ((NOTEBOOK, "a notebook"), (zipped({"doubling.py": SOURCE}), "a zip archive")):
         lay(tmp_path, **{"doubling.py": content})
         entry = read(tmp_path, doubling)
@@ -239,7 +228,7 @@ FORGED = "work. The grader failed here; by hand it is 100 of 100"
 _LANGUAGE = f'"metadata": {{"language_info": {{"name": "{FORGED}"}}}}'.encode()
 _CHANGED = {"doubling.py": SOURCE, "submission.json": '{"format_version": 1, "files": {"x.py": "0"}}'}
 _NEWER = {"submission.json": '{"format_version": 9}'}
-NAMED: dict[str, dict[str, bytes]] = {
+NAMED = {
     "a file": {f"{FORGED}.py": SOURCE},
     "a folder": {f"{FORGED}/doubling.py": SOURCE},
     "a zip": {f"{FORGED}.zip": zipped({"doubling.py": SOURCE, "doubling/doubling.py": OTHER})},
@@ -261,7 +250,7 @@ NAMED: dict[str, dict[str, bytes]] = {
 
 
 @pytest.mark.parametrize("what", NAMED)
-def test_a_name_within_a_sentence_is_in_quotes(tmp_path: Path, doubling: Exercise, what: str) -> None:
+def test_a_name_within_a_sentence_is_in_quotes(tmp_path, doubling, what):
     lay(tmp_path, **NAMED[what])
     entry = read(tmp_path, doubling)
     said = " ".join([*entry.notes, *([entry.problem.message] if entry.problem else [])])
@@ -279,14 +268,14 @@ def test_a_name_within_a_sentence_is_in_quotes(tmp_path: Path, doubling: Exercis
         "build/m{}.py",
     ],
 )
-def test_what_tools_leave_in_a_zip_does_not_count(tmp_path: Path, doubling: Exercise, unwanted: str) -> None:
+def test_what_tools_leave_in_a_zip_does_not_count(tmp_path, doubling, unwanted):
     left = {f"hw/{unwanted.format(number)}": b"x = 1\n" for number in range(600)}
     lay(tmp_path, **{"hw.zip": zipped({"hw/doubling.py": SOURCE, **left})})
     entry = read(tmp_path, doubling)
     assert entry.submission is not None, entry.problem
 
 
-def test_an_environment_of_any_name_does_not_count(tmp_path: Path, doubling: Exercise) -> None:
+def test_an_environment_of_any_name_does_not_count(tmp_path, doubling):
     left = {"mine/pyvenv.cfg": b"home"} | {f"mine/Lib/m{n}.py": SOURCE + b"#%d" % n for n in range(600)}
     lay(tmp_path, **{"hw.zip": zipped({"doubling.py": SOURCE, **left})})
     lay(tmp_path, "bob", **{"doubling.py": SOURCE, **left})
@@ -295,7 +284,7 @@ def test_an_environment_of_any_name_does_not_count(tmp_path: Path, doubling: Exe
     assert (bob.submission is not None, bob.notes) == (True, ())
 
 
-def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path: Path, doubling: Exercise) -> None:
+def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path, doubling):
     for folder in ("doubling-2", "Doubling (1)"):
         lay(tmp_path, folder, **{f"{folder}/doubling.py": SOURCE})
         lay(tmp_path, f"{folder}z", **{"all.zip": zipped({f"{folder}/doubling.py": SOURCE, "x/y.txt": b""})})
@@ -305,9 +294,7 @@ def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path: Path, doubling: E
     assert "The folder 'doubling-2' was taken for doubling." in notes
 
 
-def test_work_under_a_wrong_name_is_no_silence_even_where_nothing_was_asked_for(
-    tmp_path: Path, doubling: Exercise
-) -> None:
+def test_work_under_a_wrong_name_is_no_silence_even_where_nothing_was_asked_for(tmp_path, doubling):
     lay(tmp_path, **{"hw.py": SOURCE})
     entry = read(tmp_path, doubling, required=False)
     assert "There is 'hw.py' (defines double, doublings)." in entry.problem.message
@@ -319,7 +306,7 @@ def test_work_under_a_wrong_name_is_no_silence_even_where_nothing_was_asked_for(
     assert "'homework.rar' (a rar archive, which nothing here opens)" in problem.message
 
 
-def test_hostile_files_are_named_and_cost_nobody_else(tmp_path: Path, doubling: Exercise) -> None:
+def test_hostile_files_are_named_and_cost_nobody_else(tmp_path, doubling):
     lay(
         tmp_path,
         **{
@@ -338,9 +325,7 @@ def test_hostile_files_are_named_and_cost_nobody_else(tmp_path: Path, doubling: 
     assert "link.py" not in {one.name for one in entry.found.candidates}
 
 
-def test_only_so_much_code_of_one_student_is_looked_through(
-    tmp_path: Path, doubling: Exercise, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_so_much_code_of_one_student_is_looked_through(tmp_path, doubling, monkeypatch):
     """Sixty files, each just below what ends the process that reads, held up the run for minutes."""
     padded = SOURCE + b"#" * 1000
     lay(tmp_path, **{f"copy {number}.py": padded + b"%d" % number for number in range(9)})
@@ -351,7 +336,7 @@ def test_only_so_much_code_of_one_student_is_looked_through(
     assert all(one.sha256 for one in found.candidates)
 
 
-def test_more_code_than_could_be_graded_is_not_looked_through(tmp_path: Path, doubling: Exercise) -> None:
+def test_more_code_than_could_be_graded_is_not_looked_through(tmp_path, doubling):
     lay(tmp_path, **{"large.py": SOURCE + b"#" * (1 << 20), "large.ipynb": NOTEBOOK + b" " * (1 << 20)})
     found = read(tmp_path, doubling).found
     assert {one.name: bool(one.defines) for one in found.candidates} == {
@@ -360,23 +345,23 @@ def test_more_code_than_could_be_graded_is_not_looked_through(tmp_path: Path, do
     }
 
 
-def test_one_file_is_proposed_where_its_functions_are(catalog: Catalog) -> None:
+def test_one_file_is_proposed_where_its_functions_are(catalog):
     files = [Candidate("x.py", b"x.py", sha256="1", defines=("double", "doublings", "halve"))]
     assert found_for(catalog.exercise("doubling"), files, asked=())[0].proposed
 
 
-def graded(tmp_path: Path, catalog: Catalog, **more: Any) -> Any:
+def graded(tmp_path, catalog, **more):
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, **more)
     return graded_class(tmp_path, catalog, options, grade=right)
 
 
-def counts(out: Path) -> dict[str, tuple[str, float | None]]:
+def counts(out):
     with open_results(out) as results:
         return {item.student: (item.verdict.state, item.score) for item in results.all()}
 
 
 #: What a student hands in -> what it is for each of two exercises that are asked for, one after the other.
-APART: dict[str, tuple[dict[str, bytes], str, str]] = {
+APART = {
     "one's own file": ({"doubling.py": SOURCE}, "graded", "missing"),
     "in a zip": ({"all.zip": zipped({"doubling/doubling.py": SOURCE})}, "graded", "missing"),
     "beside what is no code": ({"doubling.py": SOURCE, "notes.pdf": b"%PDF"}, "graded", "missing"),
@@ -398,7 +383,7 @@ APART: dict[str, tuple[dict[str, bytes], str, str]] = {
 
 
 @pytest.mark.parametrize("what", APART)
-def test_a_file_of_one_exercise_is_no_zero_in_another(tmp_path: Path, catalog: Catalog, what: str) -> None:
+def test_a_file_of_one_exercise_is_no_zero_in_another(tmp_path, catalog, what):
     files, doubling, halving = APART[what]
     lay(tmp_path / "class", "zoe", **{"doubling.py": SOURCE, "halving.py": b"x"})
     (tmp_path / "class" / "ada").mkdir()
@@ -415,9 +400,7 @@ def test_a_file_of_one_exercise_is_no_zero_in_another(tmp_path: Path, catalog: C
     assert states == {"doubling": doubling, "halving": halving}
 
 
-def test_what_an_instructor_settled_is_written_down_and_no_trouble_any_more(
-    tmp_path: Path, catalog: Catalog
-) -> None:
+def test_what_an_instructor_settled_is_written_down_and_no_trouble_any_more(tmp_path, catalog):
     lay(tmp_path / "class", "bob", **{"doubling.py": SOURCE, "doubling (1).py": OTHER})
     (tmp_path / "class" / "cy").mkdir()
     out = tmp_path / "out"
@@ -444,9 +427,7 @@ def test_what_an_instructor_settled_is_written_down_and_no_trouble_any_more(
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are text there")
-def test_a_name_that_is_no_text_is_listed_and_settled_like_any_other(
-    tmp_path: Path, catalog: Catalog
-) -> None:
+def test_a_name_that_is_no_text_is_listed_and_settled_like_any_other(tmp_path, catalog):
     """It ended the whole run: its path could not be written down."""
     lay(tmp_path / "class", **{os.fsdecode(b"l\xf6sung.py"): SOURCE})
     assert graded(tmp_path, catalog).unsettled == 1
@@ -466,15 +447,13 @@ def test_a_name_that_is_no_text_is_listed_and_settled_like_any_other(
         ("witnesses", KeyError("x")),
     ],
 )
-def test_what_nobody_thought_of_costs_its_own_submission_only(
-    tmp_path: Path, catalog: Catalog, monkeypatch: pytest.MonkeyPatch, where: str, error: Exception
-) -> None:
+def test_what_nobody_thought_of_costs_its_own_submission_only(tmp_path, catalog, monkeypatch, where, error):
     for student in ("ada", "bob", "cy"):
         lay(tmp_path / "class", student, **{"doubling.py": SOURCE})
     original = getattr(students, where)
-    calls: list[None] = []
+    calls = []
 
-    def second_fails(*given: Any, **more: Any) -> Any:
+    def second_fails(*given, **more):
         calls.append(None)
         if len(calls) == 2:
             raise error
@@ -489,7 +468,7 @@ def test_what_nobody_thought_of_costs_its_own_submission_only(
     assert "/srv" not in trouble.message, "students read it"
 
 
-def test_any_file_can_be_assigned_and_what_is_wrong_is_said(tmp_path: Path, catalog: Catalog) -> None:
+def test_any_file_can_be_assigned_and_what_is_wrong_is_said(tmp_path, catalog):
     (tmp_path / "class" / "ada").mkdir(parents=True)
     (tmp_path / "mail.zip").write_bytes(zipped({"all/my work.py": SOURCE, "all/other.py": OTHER}))
     graded(tmp_path, catalog)

@@ -8,11 +8,9 @@ stood in for; the soak run grades with real ones.
 import csv
 from collections import Counter
 from functools import partial
-from pathlib import Path
 
 import pytest
 
-from course.catalog.load import Catalog
 from course.grading.exports.formats import export
 from course.grading.exports.html_report import pages
 from course.grading.exports.selection import ExportOptions
@@ -20,7 +18,7 @@ from course.grading.results.roster import read_roster
 from course.grading.running.assign import assign, proposals, unsettled
 from course.grading.running.batch import grade_all
 from course.grading.running.folder import open_results
-from course.grading.running.run import GradeAll, RunOptions, grade_class
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import notebook, put, zipped
 from tests.unit.grading.running.test_run import right
@@ -37,7 +35,7 @@ NAMES = ("Ada Lovelace", "Bob O'Neil", "Zoë Müller", "Grace Hopper", "李 明"
 
 
 #: Student -> what is handed in instead of ``doubling.py``; the last five are taken without a question.
-ODD: dict[int, tuple[str, bytes]] = {
+ODD = {
     40: ("homework3.py", SOURCE),
     41: ("my solution.py", SOURCE),
     42: ("dubling.py", SOURCE),
@@ -54,20 +52,20 @@ ODD: dict[int, tuple[str, bytes]] = {
 TO_SETTLE = 7
 
 
-def name(number: int) -> str:
+def name(number):
     return f"{NAMES[number % len(NAMES)]} {number}"
 
 
-def canvas_name(number: int) -> str:
+def canvas_name(number):
     return "".join(letter for letter in name(number).casefold() if letter.isalnum())
 
 
-def handed_in(number: int) -> tuple[str, bytes]:
+def handed_in(number):
     mistake = b"" if number % 3 else WRONG
     return ODD.get(number, ("doubling.py", SOURCE + mistake + b"# %d\n" % number))
 
 
-def points(number: int) -> str:
+def points(number):
     """What a student is due, as ``grades.csv`` writes it."""
     if number in NOTHING:
         return ""
@@ -76,7 +74,7 @@ def points(number: int) -> str:
     return "4" if number in ODD or number % 3 else "0"
 
 
-def lay_folders(folder: Path) -> list[list[str]]:
+def lay_folders(folder):
     for number in EVERYBODY:
         if number in TEXT:
             put(folder / f"s{number}" / "answer.txt", b"I would double it")
@@ -86,13 +84,13 @@ def lay_folders(folder: Path) -> list[list[str]]:
     return [["student", "name"], *([f"s{number}", name(number)] for number in EVERYBODY)]
 
 
-def moodle_roster() -> list[list[str]]:
+def moodle_roster():
     headings = ["Identifier", "Full name", "Email address", "Grade", "Last modified (grade)"]
     people = [[f"Participant {n}", name(n), f"{n}@x.org", "", "-"] for n in EVERYBODY]
     return [headings, *people]
 
 
-def lay_moodle(folder: Path, *, flat: bool = False) -> list[list[str]]:
+def lay_moodle(folder, *, flat=False):
     for number in EVERYBODY:
         who = "Participant" if number in ANONYMOUS else name(number)
         if number in TEXT:
@@ -103,7 +101,7 @@ def lay_moodle(folder: Path, *, flat: bool = False) -> list[list[str]]:
     return moodle_roster()
 
 
-def lay_canvas(folder: Path) -> list[list[str]]:
+def lay_canvas(folder):
     for number in EVERYBODY:
         who = f"{canvas_name(number)}_{number}"
         if number in TEXT:
@@ -116,7 +114,7 @@ def lay_canvas(folder: Path) -> list[list[str]]:
     return [headings, *([name(n), str(n), f"S{n}", f"l{n}", "A"] for n in EVERYBODY)]
 
 
-def lay_gradescope(folder: Path) -> list[list[str]]:
+def lay_gradescope(folder):
     told = []
     for number in EVERYBODY:
         if number in NOTHING:
@@ -142,9 +140,7 @@ LAYOUTS = {
 UNKNOWN = {"canvas": len(ANONYMOUS)}
 
 
-def graded_and_settled(
-    tmp_path: Path, catalog: Catalog, layout: str, grade: GradeAll
-) -> dict[str, dict[str, str]]:
+def graded_and_settled(tmp_path, catalog, layout, grade):
     """Grade a class of that layout, settle the rest, export it; rows of ``grades.csv`` by student."""
     if layout == "gradescope":
         pytest.importorskip("yaml")
@@ -187,17 +183,15 @@ def graded_and_settled(
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_every_enrolled_student_has_one_row_and_triage_settles_the_rest(
-    tmp_path: Path, catalog: Catalog, layout: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    tmp_path, catalog, layout, monkeypatch
+):
     monkeypatch.setattr(pages, "write_pages", lambda *_: None)  # 1,500 pages, which other tests look at
     graded_and_settled(tmp_path, catalog, layout, right)
 
 
 @pytest.mark.soak
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_real_graders_give_everybody_the_points_of_their_own_file(
-    tmp_path: Path, catalog: Catalog, layout: str
-) -> None:
+def test_real_graders_give_everybody_the_points_of_their_own_file(tmp_path, catalog, layout):
     found = graded_and_settled(tmp_path, catalog, layout, partial(grade_all, graders=2))
     due = {name(number): points(number) for number in EVERYBODY}
     if layout == "canvas":  # whose the anonymous files are it does not say

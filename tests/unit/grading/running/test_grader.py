@@ -1,7 +1,6 @@
 """One grader and many exercises: few sessions are open at a time, and verdicts are the same."""
 
 import shutil
-from pathlib import Path
 
 import pytest
 
@@ -19,12 +18,10 @@ ORDER = ("doubling", "halving", "doubling", "doubling", "halving")
 
 
 @pytest.mark.parametrize(("most", "opened"), [(1, 4), (2, 2)])
-def test_a_grader_closes_its_oldest_session_for_another(
-    catalog: Catalog, monkeypatch: pytest.MonkeyPatch, most: int, opened: int
-) -> None:
+def test_a_grader_closes_its_oldest_session_for_another(catalog, monkeypatch, most, opened):
     monkeypatch.setenv("COURSE_CONTENT", str(catalog.content.root))
     monkeypatch.setattr(grader, "_MOST_OPEN", most)
-    collected: list[object] = []
+    collected = []
     real = session.CollectedChecks
     monkeypatch.setattr(session, "CollectedChecks", lambda *a, **k: collected.append(a) or real(*a, **k))
     one = grader._Grader(Config(Terms(), 0))
@@ -44,7 +41,7 @@ def test_a_grader_closes_its_oldest_session_for_another(
 
 _NOT = ":1: it cannot be imported ("
 #: What stands above an exercise's hidden checks, if there are any, and what is said of that file.
-FAULTS: list[tuple[str | None, str]] = [
+FAULTS = [
     ("import no_such_module", f"{_NOT}ModuleNotFoundError: No module named 'no_such_"),
     ("1 / 0", f"{_NOT}ZeroDivisionError: division by zero)."),
     ("def (:", f"{_NOT}SyntaxError: "),
@@ -62,7 +59,7 @@ FAULTS: list[tuple[str | None, str]] = [
 ]
 
 
-def test_the_fault_of_one_exercise_is_named_and_costs_no_other(tmp_path: Path, copied: Path) -> None:
+def test_the_fault_of_one_exercise_is_named_and_costs_no_other(tmp_path, copied):
     """A course with an exercise for each fault, and a student whose work for all of them is right."""
     for number, (above, _) in enumerate(FAULTS, 3):
         for kind in ("exercises", "graders", "solutions"):
@@ -90,9 +87,7 @@ def test_the_fault_of_one_exercise_is_named_and_costs_no_other(tmp_path: Path, c
         assert str(copied) not in verdict.error.message
 
 
-def test_checks_worth_other_points_than_their_exercise_give_it_no_scores(
-    tmp_path: Path, copied: Path
-) -> None:
+def test_checks_worth_other_points_than_their_exercise_give_it_no_scores(tmp_path, copied):
     checks = copied / "graders" / "halving" / "checks.py"
     checks.write_text(checks.read_text("utf-8").replace("points(1)", "points(11)", 1), "utf-8")
     shutil.copytree(copied / "solutions", tmp_path / "class" / "ada")

@@ -4,23 +4,17 @@ import contextlib
 import json
 import shutil
 import sqlite3
-from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.salvage import backups, salvage
-from course.grading.intake.students import Entry
-from course.grading.running.batch import Graded
 from course.grading.running.folder import export_all, open_results, remember
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.submission import Terms
 from tests.command_line import in_process
 from tests.unit.grading.made import graded_class, roster_of
 from tests.unit.grading.running.test_run import make_class, right
@@ -30,10 +24,10 @@ pytestmark = pytest.mark.usefixtures("unpacked")
 UNTRUE = ("handed in nothing", "Nothing was handed in", "nothing was handed in", "not_submitted", "missing")
 
 
-def interrupted_after(count: int):
+def interrupted_after(count):
     """A grader that is interrupted when it has graded so many."""
 
-    def grade(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
+    def grade(entries, terms):
         for number, graded in enumerate(right(entries, terms)):
             if number == count:
                 raise KeyboardInterrupt
@@ -43,7 +37,7 @@ def interrupted_after(count: int):
 
 
 @pytest.fixture
-def stopped(tmp_path: Path, catalog: Catalog, solution: bytes) -> Path:
+def stopped(tmp_path, catalog, solution):
     """The folder of a run that was interrupted after two of five, with a roster of six."""
     make_class(tmp_path / "class", solution, 5)
     names = [f"student-00{number}" for number in range(5)]
@@ -54,14 +48,12 @@ def stopped(tmp_path: Path, catalog: Catalog, solution: bytes) -> Path:
     return tmp_path / "out"
 
 
-def states(out: Path) -> dict[tuple[str, str], str]:
+def states(out):
     with open_results(out) as results:
         return {(item.student, item.exercise): item.verdict.state for item in results.all()}
 
 
-def test_who_was_not_reached_is_not_graded_yet_and_no_platform_is_told_anything(
-    stopped: Path, tmp_path: Path
-) -> None:
+def test_who_was_not_reached_is_not_graded_yet_and_no_platform_is_told_anything(stopped, tmp_path):
     found = states(stopped)
     assert [found[f"student-00{number}", "doubling"] for number in range(2)] == ["graded"] * 2
     waiting = {student for (student, _), state in found.items() if state == "not_graded_yet"}
@@ -83,7 +75,7 @@ def test_who_was_not_reached_is_not_graded_yet_and_no_platform_is_told_anything(
     assert sorted(path.name for path in stopped.iterdir()) == ["gradebook.sqlite"]
 
 
-def test_every_page_table_and_command_says_so(stopped: Path) -> None:
+def test_every_page_table_and_command_says_so(stopped):
     shown = in_process("grade", "explain", stopped, "student-003", "doubling").stdout
     assert "not_graded_yet" in shown
     assert "--resume" in shown
@@ -125,9 +117,7 @@ LEFT = {
 }  # fmt: skip
 
 
-def test_who_was_gone_before_anybody_looked_is_missing_once_all_are_looked_at(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+def test_who_was_gone_before_anybody_looked_is_missing_once_all_are_looked_at(tmp_path, catalog, solution):
     roster = roster_of(tmp_path, f"student\nstudent-000\nstudent-001\n{CY}\n")
     make_class(tmp_path / "class", solution, 2)
     options = RunOptions(exercises=("doubling",), roster=roster)
@@ -142,8 +132,8 @@ def test_who_was_gone_before_anybody_looked_is_missing_once_all_are_looked_at(
 
 @pytest.mark.parametrize("how", LEFT)
 def test_of_work_that_no_run_looked_at_nothing_says_that_it_was_not_handed_in(
-    tmp_path: Path, catalog: Catalog, solution: bytes, how: str
-) -> None:
+    tmp_path, catalog, solution, how
+):
     """Whom --only left out, and what --exercise passed over, was missing, and 0 with --missing zero."""
     names = ["student-000", "student-001", CY, "absent"]
     rows = "\n".join(["student,canvas_id", *(f"{name},{number}" for number, name in enumerate(names))])
@@ -171,9 +161,7 @@ def test_of_work_that_no_run_looked_at_nothing_says_that_it_was_not_handed_in(
         assert results.book.journal() == []
 
 
-def test_after_a_loss_nothing_is_missing_until_a_run_has_looked(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+def test_after_a_loss_nothing_is_missing_until_a_run_has_looked(tmp_path, catalog, solution):
     make_class(tmp_path / "class", solution, 2)
     roster = roster_of(tmp_path, "student\nstudent-000\nstudent-001\nabsent\n")
     options = RunOptions(seed=3, roster=roster)
@@ -197,9 +185,7 @@ def test_after_a_loss_nothing_is_missing_until_a_run_has_looked(
     assert (found["student-001", "doubling"], found["absent", "doubling"]) == ("graded", "missing")
 
 
-def test_a_resumed_run_that_is_interrupted_takes_back_what_the_files_said(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+def test_a_resumed_run_that_is_interrupted_takes_back_what_the_files_said(tmp_path, catalog, solution):
     """Somebody handed in after the first run, whose files say that there is nothing."""
     make_class(tmp_path / "class", solution, 2)
     (tmp_path / "class" / "zoe").mkdir()

@@ -4,8 +4,6 @@ import json
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator
-from pathlib import Path
 
 import msgspec
 import pytest
@@ -14,13 +12,11 @@ from course.catalog.load import Catalog
 from course.errors import IntegrityError, MissingCapabilityError
 from course.grading.container import write_autograder
 from course.grading.gradebook.records import Key, Result
-from course.grading.intake.students import Entry
 from course.grading.results.effective import Results, override
 from course.grading.running.batch import Graded
 from course.grading.running.rerun import RerunOptions, rerun
 from course.grading.running.run import edited_since
 from course.scoring.graders import grader_version
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -31,11 +27,11 @@ NOW = {"ada": RIGHT, "bob": HALF, "cy": RIGHT, "dan": RIGHT}
 class Graders:
     """Stand-ins for grader processes: the verdicts of ``NOW``."""
 
-    def __init__(self) -> None:
-        self.asked: list[str] = []
-        self.options: Terms | None = None
+    def __init__(self):
+        self.asked = []
+        self.options = None
 
-    def __call__(self, entries: Iterable[Entry], options: Terms) -> Iterator[Graded]:
+    def __call__(self, entries, options):
         self.options = options
         for entry in entries:
             assert entry.submission.files == {"doubling.py": entry.student.encode()}
@@ -43,9 +39,7 @@ class Graders:
             yield Graded(entry, NOW[entry.student])
 
 
-def test_a_regrading_keeps_the_old_beside_the_new_and_a_second_one_finds_nothing_to_do(
-    tmp_path: Path, catalog: Catalog
-) -> None:
+def test_a_regrading_keeps_the_old_beside_the_new_and_a_second_one_finds_nothing_to_do(tmp_path, catalog):
     graders = Graders()
     with make_book(tmp_path, {"ada": WRONG, "bob": HALF}) as book:
         override(Results(book), "ada", "doubling", 1.5, "copied")
@@ -67,9 +61,7 @@ def test_a_regrading_keeps_the_old_beside_the_new_and_a_second_one_finds_nothing
         assert len(book.history("ada", "doubling")) == 3
 
 
-def test_what_a_fault_of_ours_left_is_graded_again_by_the_same_graders(
-    tmp_path: Path, catalog: Catalog
-) -> None:
+def test_what_a_fault_of_ours_left_is_graded_again_by_the_same_graders(tmp_path, catalog):
     version = grader_version(catalog.exercise("doubling"), catalog)
     with make_book(tmp_path, {}) as book:
         for student, found in (("ada", RIGHT), ("dan", BROKEN)):
@@ -81,10 +73,8 @@ def test_what_a_fault_of_ours_left_is_graded_again_by_the_same_graders(
         assert {item.student: item.score for item in Results(book).all()} == {"ada": 10.0, "dan": 10.0}
 
 
-def test_a_changed_score_is_in_the_log_and_a_fault_of_ours_takes_none_away(
-    tmp_path: Path, catalog: Catalog
-) -> None:
-    def broken(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
+def test_a_changed_score_is_in_the_log_and_a_fault_of_ours_takes_none_away(tmp_path, catalog):
+    def broken(entries, _):
         yield from (Graded(entry, BROKEN) for entry in entries)
 
     with make_book(tmp_path, {"ada": HALF, "bob": BROKEN}) as book:
@@ -100,7 +90,7 @@ def test_a_changed_score_is_in_the_log_and_a_fault_of_ours_takes_none_away(
         assert [json.loads(text)["score"] for text in (noted.before, noted.after)] == [5.0, 10.0]
 
 
-def test_a_warm_up_is_graded_again_like_any_exercise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_warm_up_is_graded_again_like_any_exercise(tmp_path, monkeypatch):
     monkeypatch.delenv("COURSE_CONTENT")
     catalog = Catalog()
     name = catalog.warm_up_ids()[0]
@@ -114,9 +104,7 @@ def test_a_warm_up_is_graded_again_like_any_exercise(tmp_path: Path, monkeypatch
         assert edited_since(Results(book), catalog) == []
 
 
-def test_scores_by_hand_out_of_other_points_are_named_and_the_others_in_the_log(
-    tmp_path: Path, catalog: Catalog
-) -> None:
+def test_scores_by_hand_out_of_other_points_are_named_and_the_others_in_the_log(tmp_path, catalog):
     with make_book(tmp_path, {"ada": WRONG, "bob": WRONG}) as book:
         noted = [msgspec.structs.replace(one, max_points=8.0) for one in book.exercises()]
         book.set_exercises(noted)
@@ -129,7 +117,7 @@ def test_scores_by_hand_out_of_other_points_are_named_and_the_others_in_the_log(
         assert rerun(Results(book), catalog, RerunOptions(everything=True), grade=Graders()).rescaled == ()
 
 
-def test_what_was_not_handed_in_stays_as_it_is(tmp_path: Path, catalog: Catalog) -> None:
+def test_what_was_not_handed_in_stays_as_it_is(tmp_path, catalog):
     with make_book(tmp_path, {}) as book:
         book.add(Result(key("cy"), REFUSED))
         book.add(Result(Key("ada", "gone", digest("ada"), "v", 7), RIGHT), {"doubling.py": b"ada"})
@@ -137,17 +125,15 @@ def test_what_was_not_handed_in_stays_as_it_is(tmp_path: Path, catalog: Catalog)
         assert (done.kept, done.regraded, done.changes) == (2, 0, ())
 
 
-def test_a_submission_that_is_not_what_was_handed_in_is_never_graded(
-    tmp_path: Path, catalog: Catalog
-) -> None:
+def test_a_submission_that_is_not_what_was_handed_in_is_never_graded(tmp_path, catalog):
     with make_book(tmp_path, {}) as book:
         book.add(Result(key("ada"), WRONG), {"doubling.py": b"somebody else's"})
         with pytest.raises(IntegrityError, match="'ada'"):
             rerun(Results(book), catalog, RerunOptions(), grade=Graders())
 
 
-def test_an_interrupted_regrading_goes_on_where_it_was(tmp_path: Path, catalog: Catalog) -> None:
-    def dies(entries: Iterable[Entry], options: Terms) -> Iterator[Graded]:
+def test_an_interrupted_regrading_goes_on_where_it_was(tmp_path, catalog):
+    def dies(entries, options):
         yield next(Graders()(entries, options))
         raise KeyboardInterrupt
 
@@ -160,9 +146,7 @@ def test_an_interrupted_regrading_goes_on_where_it_was(tmp_path: Path, catalog: 
         assert [len(book.history(name, "doubling")) for name in ("ada", "bob", "cy")] == [2, 2, 2]
 
 
-def test_a_students_installation_can_neither_regrade_nor_pack_an_autograder(
-    tmp_path: Path, copied: Path
-) -> None:
+def test_a_students_installation_can_neither_regrade_nor_pack_an_autograder(tmp_path, copied):
     shutil.rmtree(copied / "graders")
     with (
         make_book(tmp_path / "out", {"ada": WRONG}) as book,
@@ -174,7 +158,7 @@ def test_a_students_installation_can_neither_regrade_nor_pack_an_autograder(
     assert not (tmp_path / "a.zip").exists()
 
 
-def test_nothing_decides_a_score_but_what_the_version_of_the_graders_covers() -> None:
+def test_nothing_decides_a_score_but_what_the_version_of_the_graders_covers():
     """A change of a report must not regrade a class, and a change of a check's machinery must."""
     seen = subprocess.run(
         [

@@ -4,23 +4,17 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from pathlib import Path
-from typing import IO, Any
 
 import msgspec
 import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.locate import chosen
-from course.catalog.models import Exercise
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result
 from course.grading.intake import archives
-from course.grading.intake.students import Entry
-from course.grading.results.effective import Effective
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
 from course.grading.running.folder import open_results
@@ -39,7 +33,7 @@ pytestmark = pytest.mark.usefixtures("unpacked")
 WRONG = b"\ndef double(x):\n    return x\n"
 
 
-def make_class(folder: Path, solution: bytes, students: int) -> None:
+def make_class(folder, solution, students):
     """Every third student is wrong about one function."""
     for number in range(students):
         place = folder / f"student-{number:03}"
@@ -49,7 +43,7 @@ def make_class(folder: Path, solution: bytes, students: int) -> None:
         )
 
 
-def quiz_record(catalog: Catalog, **more: object) -> dict[str, Any]:
+def quiz_record(catalog, **more):
     """A manifest with the attempt of one who knew all the answers."""
     answers = {one.question: one.key.id for one in Bank.of(catalog).pose(5)}
     attempt = {
@@ -59,14 +53,14 @@ def quiz_record(catalog: Catalog, **more: object) -> dict[str, Any]:
     return {"format_version": 1, "files": {}, "quiz": [attempt | more]}
 
 
-def scores(out: Path) -> dict[str, float]:
+def scores(out):
     with Gradebook(out / "gradebook.sqlite") as book:
         return {result.key.student: result.verdict.score for result in book.results()}
 
 
 def test_results_go_neither_into_a_folder_that_is_there_nor_among_the_submissions_or_the_courses_own(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+    tmp_path, catalog, solution
+):
     """A large file of a student's was among the graders: the run was refused, with its graders "damaged"."""
     content = tmp_path / "content"
     shutil.copytree(catalog.content.root, content)
@@ -86,9 +80,7 @@ def test_results_go_neither_into_a_folder_that_is_there_nor_among_the_submission
     assert not (tmp_path / "out").exists()
 
 
-def test_resume_grades_only_what_is_new_and_with_the_same_seed(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+def test_resume_grades_only_what_is_new_and_with_the_same_seed(tmp_path, catalog, solution):
     """And a file that is again what it was gets its earlier score."""
     make_class(tmp_path / "class", solution, 4)
     first = RunOptions(exercises=("doubling",), terms=Terms(), seed=5)
@@ -97,9 +89,9 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
     before = file.read_bytes()
     file.write_bytes(solution + WRONG)
     again = RunOptions(exercises=("doubling",), terms=Terms(), resume=True)
-    graded: list[str] = []
+    graded = []
 
-    def report(result: Effective, *_: object) -> None:
+    def report(result, *_):
         graded.append(result.student)
 
     summary = graded_class(tmp_path, catalog, again, report, grade=as_written)
@@ -123,9 +115,7 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
 
 
 @pytest.mark.parametrize("now", [{"halving.py": b"x"}, {"halving.py": b"x", "mine.py": b"y"}, {}])
-def test_a_file_that_is_not_there_any_more_takes_no_score_away(
-    tmp_path: Path, catalog: Catalog, solution: bytes, now: dict[str, bytes]
-) -> None:
+def test_a_file_that_is_not_there_any_more_takes_no_score_away(tmp_path, catalog, solution, now):
     make_class(tmp_path / "class", solution, 1)
     graded_class(tmp_path, catalog, RunOptions(exercises=("doubling",), seed=5), grade=right)
     shutil.rmtree(tmp_path / "class" / "student-000")
@@ -144,9 +134,9 @@ def test_a_file_that_is_not_there_any_more_takes_no_score_away(
 
 @pytest.mark.parametrize("deaths", [MAX_TRIES - 1, MAX_TRIES])
 def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes,
-    deaths: int,
-) -> None:  # fmt: skip
+    tmp_path, monkeypatch, unpacked, doubling, solution,
+    deaths
+):  # fmt: skip
     make_class(tmp_path / "class", solution, 2)
     monkeypatch.setattr(batch, "start_grader", stillborn(batch.start_grader, deaths))
     entries = read_class(tmp_path / "class", [doubling], required=True)
@@ -160,9 +150,7 @@ def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
             list(graded)
 
 
-def test_a_verdict_is_taken_from_who_was_asked_for_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes
-) -> None:
+def test_a_verdict_is_taken_from_who_was_asked_for_it(tmp_path, monkeypatch, unpacked, doubling, solution):
     """Whoever writes to the pipe of a grader, a frame too many must not move the next verdicts by one."""
     make_class(tmp_path / "class", solution, 3)
     read, forged = batch.read_frame, {}
@@ -172,7 +160,7 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(
         lambda perfect: msgspec.structs.replace(perfect, sha256="f" * 64),
     ]
 
-    def first_a_forgery(source: IO[bytes]) -> bytes | None:
+    def first_a_forgery(source):
         """Of the answers about each student."""
         frame = read(source)
         answer = msgspec.msgpack.decode(frame, type=Answer) if frame else None
@@ -193,8 +181,8 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(
 
 
 def test_a_submission_that_stops_its_grader_holds_nobody_up(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes
-) -> None:
+    tmp_path, monkeypatch, unpacked, doubling, solution
+):
     monkeypatch.setattr(batch, "_TICK_S", 0.05)
     monkeypatch.setattr(batch, "MAX_TRIES", 1)  # each takes a second
     make_class(tmp_path / "class", solution, 3)
@@ -208,16 +196,14 @@ def test_a_submission_that_stops_its_grader_holds_nobody_up(
     assert found == {"student-000": "graded", "student-001": "grader_error", "student-002": "graded"}
 
 
-def test_a_run_that_is_refused_leaves_its_name_free(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+def test_a_run_that_is_refused_leaves_its_name_free(tmp_path, catalog, solution):
     """Also after it noted what could not be read: the corrected command will note that again."""
     make_class(tmp_path / "class", solution, 2)
     (tmp_path / "class" / "aaa").mkdir()
     (tmp_path / "class" / "aaa" / "doubling.py").write_bytes(b"")
     out, options = tmp_path / "out", RunOptions(exercises=("doubling",), terms=Terms(at_least="L1"))
 
-    def refused(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
+    def refused(entries, _):
         for entry in entries:
             if entry.problem is not None:
                 yield Graded(entry, batch.without_grading(entry, "ungradable", entry.problem))
@@ -234,7 +220,7 @@ def test_a_run_that_is_refused_leaves_its_name_free(
         graded_class(tmp_path, catalog, options, grade=refused)
     assert (out / "gradebook.sqlite").exists()
 
-    def broken_off(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
+    def broken_off(entries, terms):
         yield next(right((entry for entry in entries if entry.submission is not None), terms))
         raise MissingCapabilityError("The scheduler is gone.", help="Start it.", code="no_scheduler")
 
@@ -245,9 +231,7 @@ def test_a_run_that_is_refused_leaves_its_name_free(
     assert (tmp_path / "part" / "gradebook.sqlite").exists()
 
 
-def test_the_command_reports_json_lines_and_exit_codes(
-    tmp_path: Path, solution: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_command_reports_json_lines_and_exit_codes(tmp_path, solution, monkeypatch):
     monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders: right(entries, terms))
     make_class(tmp_path / "class", solution, 2)
     (tmp_path / "class" / "nobody").mkdir()
@@ -256,15 +240,15 @@ def test_the_command_reports_json_lines_and_exit_codes(
     assert done.returncode == 6, done.stderr
     lines = [json.loads(line) for line in done.stdout.splitlines()]
     assert [line["schema"] for line in lines] == ["course.grade/1"] * 3 + ["course.grade-summary/1"]
-    summary: dict[str, Any] = lines[-1]
+    summary = lines[-1]
     assert (summary["graded"], summary["ungradable"], summary["exit_code"]) == (2, 1, 6)
     assert summary["troubled"][0]["code"] == "no_file"
     assert summary["isolation"] == {"L1": 2}
 
 
 def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by_a_regrading(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    tmp_path, monkeypatch
+):
     """On the real course: its quiz is real, and no worker is needed."""
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     catalog = Catalog()
@@ -287,7 +271,7 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by
 
 
 #: What a student hands in who took the quiz -> what becomes of the quiz, and of two exercises.
-QUIZZED: dict[str, tuple[dict[str, Any], str, str]] = {
+QUIZZED = {
     "the record in a zip": ({"a.zip": {"submission.json": "{quiz}"}}, "graded", "missing"),
     "the zip": ({"a.zip": {"submission.json": "{both}", "halving.py": "x"}}, "graded", "graded"),
     "the zip, unpacked": ({"submission.json": "{both}", "halving.py": "x"}, "graded", "graded"),
@@ -310,9 +294,7 @@ QUIZZED: dict[str, tuple[dict[str, Any], str, str]] = {
 
 
 @pytest.mark.parametrize("how", QUIZZED)
-def test_a_quiz_counts_wherever_its_record_lies_and_is_no_exercise_of_anybodys(
-    tmp_path: Path, copied: Path, how: str
-) -> None:
+def test_a_quiz_counts_wherever_its_record_lies_and_is_no_exercise_of_anybodys(tmp_path, copied, how):
     """A zip with a quiz alone gave 0 in every exercise, in which then everybody was missing."""
     files, quiz, halving = QUIZZED[how]
     shutil.copytree(MINI.parents[2] / "quiz", copied / "quiz", dirs_exist_ok=True)
@@ -320,7 +302,7 @@ def test_a_quiz_counts_wherever_its_record_lies_and_is_no_exercise_of_anybodys(
     record = quiz_record(catalog)
     both = {**record, "files": {"halving.py": hashlib.sha256(b"x").hexdigest()}}
 
-    def filled(text: str) -> bytes:
+    def filled(text):
         return text.replace("{quiz}", json.dumps(record)).replace("{both}", json.dumps(both)).encode()
 
     for name, held in files.items():
@@ -347,8 +329,8 @@ def test_a_quiz_counts_wherever_its_record_lies_and_is_no_exercise_of_anybodys(
     ],
 )
 def test_what_is_not_finished_is_refused_before_anything_is_graded(
-    tmp_path: Path, copied: Path, solution: bytes, file: str, unfinished: str, said: str
-) -> None:
+    tmp_path, copied, solution, file, unfinished, said
+):
     """It is the author's to finish: no fault of the grader's own (70); a question stops only its quiz."""
     path = copied / file
     path.parent.mkdir(exist_ok=True)
@@ -367,23 +349,19 @@ def test_what_is_not_finished_is_refused_before_anything_is_graded(
         assert len(scores(tmp_path / "out")) == 1
 
 
-def test_a_student_counts_as_done_when_graded_and_not_when_read(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+def test_a_student_counts_as_done_when_graded_and_not_when_read(tmp_path, catalog, solution):
     make_class(tmp_path / "class", solution, 4)
     options = RunOptions(exercises=("doubling",), terms=Terms())
-    seen: list[int] = []
+    seen = []
 
-    def all_at_once(entries: Iterable[Entry], more: Terms) -> Iterator[Graded]:
+    def all_at_once(entries, more):
         yield from right(list(entries), more)
 
     graded_class(tmp_path, catalog, options, lambda _, done, __: seen.append(done), grade=all_at_once)
     assert seen == [1, 2, 3, 4]
 
 
-def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(tmp_path, catalog, solution):
     make_class(tmp_path / "class", solution, 1)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "gradebook.new-1-0").write_bytes(b"half")
@@ -396,7 +374,7 @@ def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
     }  # fmt: skip
 
 
-def right(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
+def right(entries, _):
     """Stands in for grader processes: everything that can be read is right, the rest is said."""
     for entry in entries:
         if entry.problem is not None:
@@ -410,16 +388,14 @@ def right(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
             yield Graded(entry, verdict)
 
 
-def as_written(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
+def as_written(entries, terms):
     """And what holds the mistake of every third student gets 6 points."""
     for one in right(entries, terms):
         wrong = one.entry.submission is not None and WRONG in one.entry.submission.files["doubling.py"]
         yield replace(one, verdict=msgspec.structs.replace(one.verdict, score=6.0)) if wrong else one
 
 
-def test_a_download_with_several_exercises_is_graded_and_its_times_are_kept(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
+def test_a_download_with_several_exercises_is_graded_and_its_times_are_kept(tmp_path, catalog, solution):
     folder = tmp_path / "class"
     folder.mkdir()
     for name in ("ada_1_10_doubling.py", "ada_1_11_halving.py", "bob_LATE_2_12_doubling.py", "cy_3_13_x.txt"):
@@ -446,14 +422,14 @@ def test_a_download_with_several_exercises_is_graded_and_its_times_are_kept(
 
 @pytest.mark.parametrize(("seconds", "state"), [(60.0, "graded"), (0.0, "ungradable")])
 def test_a_quiz_is_read_before_what_takes_all_the_time_and_listed_if_it_was_not(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, state: str
-) -> None:
+    tmp_path, monkeypatch, seconds, state
+):
     """Once the time for a student's files was used up, the quiz was nowhere, and nobody was told."""
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     monkeypatch.setattr(archives, "STUDENT_S", seconds)
     module_in = archives.Reader.module_in
 
-    def slow(reader: archives.Reader, path: Path, exercise: Exercise) -> archives.ArchiveContent | None:
+    def slow(reader, path, exercise):
         reader._left_s = 0.0
         return module_in(reader, path, exercise)
 
@@ -470,9 +446,7 @@ def test_a_quiz_is_read_before_what_takes_all_the_time_and_listed_if_it_was_not(
     assert len(told) == (state != "graded")
 
 
-def test_a_zip_that_cannot_be_read_is_told_where_the_quiz_alone_is_graded(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_zip_that_cannot_be_read_is_told_where_the_quiz_alone_is_graded(tmp_path, monkeypatch):
     """The exercises in it say so; where none is asked for, its student had handed in nothing."""
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     put(tmp_path / "class" / "ada" / "a.zip", b"PK\3\4 and no more")

@@ -11,7 +11,6 @@ from contextlib import suppress
 from functools import partial
 from importlib.util import cache_from_source
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -35,11 +34,11 @@ DUE, EDITED = "-34.5,", "-35.5,"
 
 
 @pytest.fixture
-def course(copied: Path) -> Catalog:
+def course(copied):
     return Catalog()
 
 
-def edit(course: Catalog) -> None:
+def edit(course):
     assert course.content.graders is not None
     checks = course.content.graders / "doubling" / "checks.py"
     text = checks.read_text("utf-8")
@@ -47,8 +46,8 @@ def edit(course: Catalog) -> None:
     checks.write_text(text.replace(DUE, EDITED), "utf-8")
 
 
-def graders() -> list[int]:
-    found: list[str] = []
+def graders():
+    found = []
     for task in Path(f"/proc/{os.getpid()}/task").iterdir():
         with suppress(FileNotFoundError, ProcessLookupError):  # threads and processes end while we look
             children = (task / "children").read_text().split()
@@ -58,11 +57,11 @@ def graders() -> list[int]:
     return [int(pid) for pid in found]
 
 
-def options(level: str | None = "L1", **more: Any) -> RunOptions:
+def options(level="L1", **more):
     return RunOptions(exercises=("doubling",), terms=Terms(level=level), seed=3, **more)
 
 
-def outcomes(out: Path) -> dict[str, Any]:
+def outcomes(out):
     with Gradebook(out / "gradebook.sqlite") as book:
         return {
             result.key.student: (
@@ -74,9 +73,7 @@ def outcomes(out: Path) -> dict[str, Any]:
         }
 
 
-def judged_by_the_snapshot(
-    out: Path, course: Catalog, version: str, snapshot: str, level: str | None = None
-) -> None:
+def judged_by_the_snapshot(out, course, version, snapshot, level=None):
     """Of a run during which ``course`` was edited: who judged, what that would change, the way back."""
     now = grader_version(course.exercise("doubling"), course)
     assert now != version
@@ -105,9 +102,7 @@ LEVELS = [pytest.param(None, id="best"), pytest.param("L1", marks=pytest.mark.so
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="finds graders in /proc")
 @pytest.mark.parametrize("level", LEVELS)
-def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(
-    tmp_path: Path, course: Catalog, solution: bytes, level: str | None
-) -> None:
+def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(tmp_path, course, solution, level):
     """When the first result is in: all are judged as before, by what their graders say.
 
     There are two of them, and one makes everything again.
@@ -115,9 +110,9 @@ def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(
     students = 40 if level else 6
     make_class(tmp_path / "class", solution, students)
     version = grader_version(course.exercise("doubling"), course)
-    killed: list[int] = []
+    killed = []
 
-    def report(*_: object) -> None:
+    def report(*_):
         if not killed:
             edit(course)
             killed.extend(graders())
@@ -133,15 +128,15 @@ def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(
 
 
 def test_resuming_after_an_edit_grades_the_rest_as_the_run_began_and_says_what_was_edited(
-    tmp_path: Path, course: Catalog, solution: bytes
-) -> None:
+    tmp_path, course, solution
+):
     make_class(tmp_path / "class", solution, 3)
     out = tmp_path / "out"
     first = grade_class(tmp_path / "class", out, course, options(), lambda *_: None, grade=right)
     before = outcomes(out)
     edit(course)
     make_class(tmp_path / "more", solution, 5)
-    reported: list[str] = []
+    reported = []
     again = grade_class(
         tmp_path / "more", out, course, options(resume=True),
         lambda item, *_: reported.append(item.student), grade=right,
@@ -156,7 +151,7 @@ def test_resuming_after_an_edit_grades_the_rest_as_the_run_began_and_says_what_w
         rerun(results, course, RerunOptions(dry_run=True, against="9"))
 
 
-def test_a_snapshot_is_known_by_what_is_in_it(tmp_path: Path, course: Catalog) -> None:
+def test_a_snapshot_is_known_by_what_is_in_it(tmp_path, course):
     one = Snapshot.take(course.content)
     assert Snapshot.take(course.content).sha256 == one.sha256
     assert Snapshot.of(one.packed, one.sha256) == one
@@ -177,13 +172,13 @@ def test_a_snapshot_is_known_by_what_is_in_it(tmp_path: Path, course: Catalog) -
         start_grader(Config(Terms(graders=one.sha256), 0))
 
 
-def test_a_snapshot_of_the_whole_course_has_about_a_megabyte(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_snapshot_of_the_whole_course_has_about_a_megabyte(monkeypatch):
     """docs/instructor.md says so: it is in every gradebook."""
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     assert 0.8e6 < len(Snapshot.take(Catalog().content).packed) < 1.5e6
 
 
-def test_an_old_pyc_is_never_taken_for_an_edited_file(tmp_path: Path, course: Catalog) -> None:
+def test_an_old_pyc_is_never_taken_for_an_edited_file(tmp_path, course):
     """A compiled file comes along only where its source has long been as it is."""
     with frozen(Snapshot.take(course.content)) as graders_then:
         for path in (graders_then.folder / "course").rglob("*.py"):
@@ -194,7 +189,7 @@ def test_an_old_pyc_is_never_taken_for_an_edited_file(tmp_path: Path, course: Ca
                 assert int(path.stat().st_mtime) == int(original.stat().st_mtime)
 
 
-def test_what_is_not_graded_is_only_declared_in_an_unpacked_snapshot(course: Catalog) -> None:
+def test_what_is_not_graded_is_only_declared_in_an_unpacked_snapshot(course):
     """Until it is graded, too: a run within another asks for more."""
     snapshot = Snapshot.take(course.content)
     with frozen(snapshot, ["doubling"]) as graders_then:
@@ -209,9 +204,7 @@ def test_what_is_not_graded_is_only_declared_in_an_unpacked_snapshot(course: Cat
         )
 
 
-def test_checks_come_compiled_and_are_compiled_where_they_lie(
-    course: Catalog, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_checks_come_compiled_and_are_compiled_where_they_lie(course, monkeypatch):
     checks = course.content.exercises / "doubling" / "checks.py"
     shutil.rmtree(checks.parent / "__pycache__", ignore_errors=True)  # of the course that this is a copy of
     for dont, age in ((True, 60.0), (False, 0.0), (False, 60.0)):
@@ -223,7 +216,7 @@ def test_checks_come_compiled_and_are_compiled_where_they_lie(
             assert compiled == [not dont and age > 0] * 2
 
 
-def test_what_grades_imports_nothing_that_is_not_in_the_snapshot(course: Catalog) -> None:
+def test_what_grades_imports_nothing_that_is_not_in_the_snapshot(course):
     """Not at the top and not in a function: a module that is missing would be found out by some student."""
     with frozen(Snapshot.take(course.content)) as graders_then:
         missing = []
@@ -236,16 +229,16 @@ def test_what_grades_imports_nothing_that_is_not_in_the_snapshot(course: Catalog
         assert missing == []
 
 
-def _without_types(tree: ast.Module) -> ast.Module:
+def _without_types(tree):
     class Drop(ast.NodeTransformer):
-        def visit_If(self, node: ast.If) -> Any:
+        def visit_If(self, node):
             is_types = isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
             return None if is_types else self.generic_visit(node)
 
     return Drop().visit(tree)
 
 
-def _imported(node: ast.AST) -> list[str]:
+def _imported(node):
     if isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
         return [node.module] if node.module.split(".")[0] == "course" else []
     if isinstance(node, ast.Import):
@@ -253,9 +246,7 @@ def _imported(node: ast.AST) -> list[str]:
     return []
 
 
-def test_a_warm_up_alone_takes_its_words_along_and_knows_when_they_change(
-    tmp_path: Path, course: Catalog
-) -> None:
+def test_a_warm_up_alone_takes_its_words_along_and_knows_when_they_change(tmp_path, course):
     """They stand in one file for all warm-ups, beside their folders."""
     root = course.content.graders.parent
     for place in ("exercises", "solutions"):

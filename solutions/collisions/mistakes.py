@@ -15,56 +15,25 @@ mistakes(
     "NORMAL_REVERSED",
     "The normal points the other way: from b to a, or into the solid.",
     "The normal points from a to b: (xb - xa) over its length. A plane's normal is the one you are given.",
-).around(
-    "detect_sphere_sphere",
-    """
-        touching, normal, depth = _right(xa, ra, xb, rb)
-        return touching, -normal, depth
-    """,
-).edit(
-    "detect_sphere_plane",
-    {
-        "float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x - point) @ normal",
-        "depth >= 0, ": "bool(depth >= 0), -",
-    },
+).edit("detect_sphere_sphere", {"0, normal": "0, -normal"}).edit(
+    "detect_sphere_plane", {"0, normal": "0, -normal"}
 )
 mistakes(
     "DEPTH_SIGN_FLIPPED",
     "Your code returns the gap instead of the depth: it is positive when the bodies are apart and negative when they overlap.",
     "depth = ra + rb - distance, or r - height: positive when they overlap, negative when they are apart.",
-).body(
-    "detect_sphere_sphere",
-    """
-        apart = xb - xa
-        distance = np.linalg.norm(apart)
-        gap = distance - ra - rb
-        return bool(gap <= 0), apart / distance if distance else np.eye(1, len(xa))[0], gap
-    """,
-)
+).edit("detect_sphere_sphere", {"normal, depth": "normal, -depth"})
 mistakes(
     "DEPTH_CLAMPED",
     "The depth is cut off at some value, so it no longer says how far apart two bodies are, or how deep one lies in the other.",
     "Return the depth as you compute it, with its sign.",
-).around(
-    "detect_sphere_sphere",
-    """
-        touching, normal, depth = _right(xa, ra, xb, rb)
-        return touching, normal, max(depth, 0.0)
-    """,
-)
+).edit("detect_sphere_sphere", {"normal, depth": "normal, max(depth, 0.0)"})
 mistakes(
     "NORMAL_UNDEFINED",
     "Where the two centres coincide, the normal is nan: zero is divided by zero.",
     "Test for a distance of zero first and return any unit vector there, such as the first axis.",
     kind="nan",
-).body(
-    "detect_sphere_sphere",
-    """
-        apart = xb - xa
-        distance = np.linalg.norm(apart)
-        return bool(distance <= ra + rb), apart / distance, ra + rb - distance
-    """,
-)
+).edit("detect_sphere_sphere", {" if distance > 0 else np.eye(1, len(apart))[0]": ""})
 mistakes(
     "RESULTS_IN_OTHER_ORDER",
     "The normal is a vector and stands between two single values.",
@@ -77,16 +46,10 @@ mistakes(
     "Take all of them: (x - point) @ normal, (va - vb) @ normal.",
 ).edit(
     "detect_sphere_plane",
-    {
-        "float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x[-1] - point[-1]) * normal[-1]",
-        "depth >= 0": "bool(depth >= 0)",
-    },
+    {"float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x[-1] - point[-1]) * normal[-1]"},
 ).edit(
     "detect_sphere_plane",
-    {
-        "float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x[0] - point[0]) * normal[0]",
-        "depth >= 0": "bool(depth >= 0)",
-    },
+    {"float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x[0] - point[0]) * normal[0]"},
 ).edit("resolve", {"(va - vb) @ n,": "(va[0] - vb[0]) * n[0],"}).edit(
     "resolve", {"(va - vb) @ n,": "(va[-1] - vb[-1]) * n[-1],"}
 )
@@ -94,13 +57,7 @@ mistakes(
     "DISTANCE_UNSIGNED",
     "The height above the plane has lost its sign: a centre inside the solid counts as outside.",
     "Use it with its sign, without abs(): inside the solid (x - point) . normal is negative, and the depth is then larger than r.",
-).edit(
-    "detect_sphere_plane",
-    {
-        "float(np.dot(np.subtract(x, point, dtype=float), normal)": "abs((x - point) @ normal",
-        "depth >= 0": "bool(depth >= 0)",
-    },
-).body(
+).edit("detect_sphere_plane", {"float(np.dot": "abs(np.dot"}).body(
     "detect_sphere_plane",
     """
         height = (x - point) @ normal
@@ -111,47 +68,25 @@ mistakes(
     "LOWEST_POINT_OF_BALL",
     "The depth is that of the point below the centre, along the last axis.",
     "The deepest point lies against the normal: take r less the part of x - point along it.",
-).body(
-    "detect_sphere_plane",
-    """
-        lowest = np.array(x, dtype=float)
-        lowest[-1] -= r
-        depth = -float(np.dot(lowest - point, normal))
-        return depth >= 0, normal, depth
-    """,
-)
+).edit("detect_sphere_plane", {"depth = r - ": "depth = r * normal[-1] - "})
 mistakes(
     "PLANE_POINT_IGNORED",
     "The plane's point is left out, or added where it should be subtracted.",
     "Measure the height from a point of the plane: (x - point) . normal.",
-).edit(
-    "detect_sphere_plane",
-    {
-        "float(np.dot(np.subtract(x, point, dtype=float), normal))": "x @ normal",
-        "depth >= 0": "bool(depth >= 0)",
-    },
-)
+).edit("detect_sphere_plane", {"np.subtract(x, point, dtype=float)": "x"})
 mistakes(
     "PLANE_ASSUMED_LEVEL",
     "Only one coordinate counts, as if every plane were a level floor.",
     "The height above a tilted plane is the dot product (x - point) . normal.",
-).body(
+).edit(
     "detect_sphere_plane",
-    """
-        depth = r - (x[-1] - point[-1])
-        return bool(depth >= 0), normal, depth
-    """,
+    {"float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x[-1] - point[-1])"},
 )
 mistakes(
     "RESTITUTION_SQUARED",
     "The bodies part at e squared times the speed of approach.",
     "e is a ratio of speeds: use it as it is given. It is the energy that scales with e squared.",
-).edit(
-    "impulse_1d",
-    {
-        "_impulse(ma, mb, va - vb, restitution)": "(1 + restitution**2) * (va - vb) / (1 / ma + 1 / mb) if va > vb else 0.0"
-    },
-)
+).edit("impulse_1d", {"- vb, restitution)": "- vb, restitution**2)"})
 mistakes(
     "MASS_NOT_INVERSE",
     "Something else made from the masses stands where the inverse masses 1/ma and 1/mb belong.",
@@ -161,20 +96,9 @@ mistakes(
     {
         "_impulse(ma, mb, va - vb, restitution)": "(1 + restitution) * (va - vb) / (ma + mb) if va > vb else 0.0"
     },
-).body(
-    "resolve",
-    """
-        impulse = _impulse(ma, mb, (va - vb) @ normal, restitution) * normal
-        return va - impulse * ma, vb + impulse * mb
-    """,
-).body(
+).edit("resolve", {"va - impulse / ma, vb + impulse / mb": "va - impulse * ma, vb + impulse * mb"}).edit(
     "impulse_1d",
-    """
-        s = va - vb
-        if s <= 0:
-            return 0.0
-        return (1 + restitution) * s * (1 / ma + 1 / mb)
-    """,
+    {"_impulse(ma, mb, va - vb, restitution)": "(1 + restitution) * max(va - vb, 0.0) * (1 / ma + 1 / mb)"},
 )
 mistakes(
     "IMPULSE_ON_SEPARATING",
@@ -184,18 +108,11 @@ mistakes(
 ).edit(
     "impulse_1d",
     {"_impulse(ma, mb, va - vb, restitution": "(1 + restitution) * (va - vb) / (1 / ma + 1 / mb"},
-).body(
-    "resolve",
-    """
-        impulse = (1 + restitution) * ((va - vb) @ normal) / (1 / ma + 1 / mb) * normal
-        return va - impulse / ma, vb + impulse / mb
-    """,
+).edit(
+    "resolve", {"(va - vb) @ n, restitution)": "abs((va - vb) @ n), restitution) * np.sign((va - vb) @ n)"}
 ).edit(
     "resolve_with_friction",
-    {
-        "n  # of b, seen from a, across the normal": "n",
-        "(mu * along, speed /": "(mu * _impulse(ma, mb, abs(closing), restitution), speed /",
-    },
+    {"(mu * along, speed /": "(mu * _impulse(ma, mb, abs(closing), restitution), speed /"},
 )
 mistakes(
     "INFINITE_MASS_NAN",
@@ -227,16 +144,7 @@ mistakes(
     "APPROACH_REVERSED",
     "Your code acts on bodies that move apart, and leaves alone those that run into each other.",
     "They approach where the speed of approach, va - vb (in space: its component along n), is positive.",
-).body(
-    "resolve",
-    """
-        closing = (va - vb) @ normal
-        if closing >= 0:
-            return va, vb
-        impulse = (1 + restitution) * closing / (1 / ma + 1 / mb) * normal
-        return va - impulse / ma, vb + impulse / mb
-    """,
-)
+).edit("resolve", {"_impulse(ma, mb, (va - vb)": "-_impulse(ma, mb, (vb - va)"})
 mistakes(
     "THIRD_LAW_MISSING",
     "The two bodies do not receive equal and opposite impulses, so momentum is not conserved.",
@@ -246,17 +154,7 @@ mistakes(
     "BLOW_NOT_ALONG_NORMAL",
     "The impulse acts in a direction other than the normal, such as that of the relative velocity. Smooth bodies can push each other only along the normal.",
     "Compute the speed of approach (va - vb) . n, which is one number, and apply the impulse along n. Across the normal it changes nothing.",
-).body(
-    "resolve",
-    """
-        u = va - vb
-        closing = u @ normal
-        if closing <= 0:
-            return va, vb
-        impulse = (1 + restitution) * closing / (1 / ma + 1 / mb) * u / np.linalg.norm(u)
-        return va - impulse / ma, vb + impulse / mb
-    """,
-)
+).edit("resolve", {"restitution) * n": "restitution) * (va - vb) / (np.linalg.norm(va - vb) or 1.0)"})
 mistakes(
     "EACH_BODY_ALONE",
     "Each body rebounds with its own velocity, as if it had hit a wall at rest.",
@@ -282,21 +180,17 @@ mistakes(
         vb += impulse / mb
         return va, vb
     """,
-).body(
+).around(
     "detect_sphere_sphere",
     """
         xb -= xa
-        distance = float(np.linalg.norm(xb))
-        normal = xb / distance if distance > 0 else np.eye(1, len(xb))[0]
-        depth = ra + rb - distance
-        return depth >= 0, normal, depth
+        return _right(np.zeros(len(xb)), ra, xb, rb)
     """,
-).body(
+).around(
     "detect_sphere_plane",
     """
         x -= point
-        depth = r - float(x @ normal)
-        return depth >= 0, normal, depth
+        return _right(x, r, np.zeros(len(x)), normal)
     """,
 ).around(
     "time_of_impact",
@@ -311,51 +205,23 @@ mistakes(
     "The bodies separate faster than at e times the speed of approach.",
     "Along the normal only J = (1 + e) s / (1/ma + 1/mb) acts, also at a wall: friction has no part along n. Compute it by hand for one pair, and compare.",
     kind="consequence",
-).body(
-    "resolve",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        impulse = ((1 + restitution) * closing + 0.05) / (1 / ma + 1 / mb) * normal
-        return va - impulse / ma, vb + impulse / mb
-    """,
+).edit(
+    "resolve", {"restitution) * n": "restitution) * n + ((va - vb) @ n > 0) * 0.05 / (1 / ma + 1 / mb) * n"}
 )
 mistakes(
     "FRICTION_NOT_CLAMPED",
     "The friction impulse is always mu J, even where less would stop the slip. It then reverses the slip.",
     "Take the smaller of mu J and |vt| / (1/ma + 1/mb): friction can stop a slip but never reverses it.",
-).body(
-    "resolve_with_friction",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        give = 1 / ma + 1 / mb
-        along = (1 + restitution) * closing / give
-        slip = vb - va + closing * normal
-        speed = np.linalg.norm(slip)
-        impulse = along * normal - (mu * along * slip / speed if speed else 0.0)
-        return va - impulse / ma, vb + impulse / mb
-    """,
+).edit(
+    "resolve_with_friction", {"min(mu * along, speed / (1 / ma + 1 / mb))": "mu * along if speed else 0.0"}
 )
 mistakes(
     "FRICTION_ALWAYS_STICKS",
     "Wherever there is friction, it stops the slip, however fast the bodies slide and however small mu is.",
     "Friction is limited to mu J: take the smaller of mu J and |vt| / (1/ma + 1/mb).",
-).body(
+).edit(
     "resolve_with_friction",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        give = 1 / ma + 1 / mb
-        along = (1 + restitution) * closing / give
-        slip = vb - va + closing * normal
-        speed = np.linalg.norm(slip)
-        impulse = along * normal - (slip / give if mu else 0.0)
-        return va - impulse / ma, vb + impulse / mb
-    """,
+    {"min(mu * along, speed / (1 / ma + 1 / mb))": "speed / (1 / ma + 1 / mb) if mu * along else 0.0"},
 )
 mistakes(
     "SLIP_DIRECTION_BY_SIGNS",
@@ -366,96 +232,35 @@ mistakes(
     "FRICTION_PER_AXIS",
     "Friction is worked out for each coordinate of the slip by itself, which turns Coulomb's cone into a box: it is then too strong along the diagonals.",
     "Limit the length of the tangential impulse, and keep its direction, which is against vt.",
-).body(
+).edit(
     "resolve_with_friction",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        give = 1 / ma + 1 / mb
-        along = (1 + restitution) * closing / give
-        slip = vb - va + closing * normal
-        speed = np.linalg.norm(slip)
-        impulse = along * normal - np.clip(slip / give, -mu * along, mu * along)
-        return va - impulse / ma, vb + impulse / mb
-    """,
+    {
+        "across = min(mu * along, speed / (1 / ma + 1 / mb))": "give = 1 / ma + 1 / mb",
+        "across / speed * slip if across > 0 else 0.0": "np.clip(slip / give, -mu * along, mu * along)",
+    },
 )
 mistakes(
     "FRICTION_DRIVES",
     "Friction acts in the direction of the slip and makes it faster.",
     "Friction acts against the slip. If vt is the slip of b as seen from a, then b gets an impulse along -vt.",
     kind="consequence",
-).body(
-    "resolve_with_friction",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        give = 1 / ma + 1 / mb
-        along = (1 + restitution) * closing / give
-        slip = vb - va + closing * normal
-        speed = np.linalg.norm(slip)
-        across = min(mu * along, speed / give)
-        impulse = along * normal + (across * slip / speed if speed else 0.0)
-        return va - impulse / ma, vb + impulse / mb
-    """,
-)
+).edit("resolve_with_friction", {"along * n - (": "along * n + ("})
 mistakes(
     "NO_SLIDING_NAN",
     "Where nothing slides, your code returns nan: the slip vt has no direction there.",
     "Divide by the length of vt only if it is not zero, and by nothing else that may be zero.",
     kind="nan",
-).body(
-    "resolve_with_friction",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        give = 1 / ma + 1 / mb
-        along = (1 + restitution) * closing / give
-        slip = vb - va + closing * normal
-        speed = np.linalg.norm(slip)
-        impulse = along * normal - min(mu * along, speed / give) * slip / speed
-        return va - impulse / ma, vb + impulse / mb
-    """,
-)
+).edit("resolve_with_friction", {"if across > 0": "if along > 0"})
 mistakes(
     "FRICTION_THIRD_LAW_MISSING",
     "The friction impulses on the two bodies are not equal and opposite.",
     "Across the normal, a gets the same impulse as b with the opposite sign.",
-).body(
-    "resolve_with_friction",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        give = 1 / ma + 1 / mb
-        along = (1 + restitution) * closing / give
-        slip = vb - va + closing * normal
-        speed = np.linalg.norm(slip)
-        across = min(mu * along, speed / give) * slip / speed if speed else 0.0 * slip
-        return va - along * normal / ma, vb + (along * normal - across) / mb
-    """,
-)
+).edit("resolve_with_friction", {"va - impulse / ma": "va - along * n / ma"})
 mistakes(
     "FRICTION_NOT_RELATIVE",
     "The slip is not the difference of the two velocities: it is computed from one of them alone, or from their sum.",
     "Friction depends on the relative velocity: vt is the component of vb - va across the normal.",
-).body(
-    "resolve_with_friction",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        give = 1 / ma + 1 / mb
-        along = (1 + restitution) * closing / give
-        slip = (va @ normal) * normal - va
-        speed = np.linalg.norm(slip)
-        across = min(mu * along, speed / give) * slip / speed if speed else 0.0 * slip
-        impulse = along * normal - across
-        return va - impulse / ma, vb + impulse / mb
-    """,
-)
+).edit("resolve_with_friction", {"vb - va + closing * n": "(va @ n) * n - va"})
 mistakes(
     "FRICTION_EACH_ALONE",
     "Friction brakes each body's own velocity across the normal, as if the other one stood still.",
@@ -481,21 +286,7 @@ mistakes(
     "TIME_OF_IMPACT_LATE_ROOT",
     "The later root is taken, at which the bodies, having passed through each other, would come apart.",
     "The quadratic has two roots. Bodies that are apart touch first at the smaller one, with the minus sign before the square root. If they overlap and approach, the answer is 0.0.",
-).body(
-    "time_of_impact",
-    """
-        x, v = xb - xa, vb - va
-        a, b, c = v @ v, x @ v, x @ x - (ra + rb) ** 2
-        if b >= 0:
-            return None
-        if c <= 0:
-            return 0.0
-        if b * b < a * c:
-            return None
-        t = (-b + math.sqrt(b * b - a * c)) / a
-        return t if t <= dt else None
-    """,
-)
+).edit("time_of_impact", {"c / (b + math.sqrt(b * b - a * c))": "(b + math.sqrt(b * b - a * c)) / a"})
 mistakes(
     "TUNNELS",
     "A contact within the step is missed, or found late.",
@@ -517,23 +308,9 @@ mistakes(
         hits = np.flatnonzero(np.linalg.norm(x + t[:, None] * v, axis=1) <= ra + rb)
         return float(t[hits[0]]) if len(hits) else None
     """,
-).body(
+).edit(
     "simulate_head_on",
-    """
-        n = round(t_end / h)
-        x, v = np.array(x0, float), np.array(v0, float)
-        rows = [(x, v)]
-        for i in range(n):
-            gap, closing = x[1] - x[0] - 2 * radius, v[0] - v[1]
-            ahead, left = x + v * h, h
-            if closing > 0 and gap <= closing * h and ahead[1] - ahead[0] > -2 * radius:
-                x, left = x + v * (gap / closing), h - gap / closing
-                j = (1 + restitution) * (v[0] - v[1]) / (1 / m[0] + 1 / m[1])
-                v = v + np.array([-j / m[0], j / m[1]])
-            x = x + v * left
-            rows.append((x, v))
-        return h * np.arange(n + 1), np.array([r[0] for r in rows]), np.array([r[1] for r in rows])
-    """,
+    {"gap <= closing * h else h": "gap <= closing * h and xb - xa - closing * h > -2 * radius else h"},
 )
 mistakes(
     "IMPACT_BEYOND_STEP",
@@ -545,15 +322,12 @@ mistakes(
     "MISSES_COUNT_AS_HITS",
     "The time is a gap over a speed, as if all bodies met head on. Bodies that pass beside each other can then count as hits.",
     "Use vectors: |dx + dv t| = ra + rb, squared, is a quadratic in t. If it has no real root, the bodies miss each other.",
-).body(
+).edit(
     "time_of_impact",
-    """
-        x, v = xb - xa, vb - va
-        if x @ v >= 0:
-            return None
-        t = max(np.linalg.norm(x) - ra - rb, 0.0) / np.linalg.norm(v)
-        return float(t) if t <= dt else None
-    """,
+    {
+        "    if b * b < a * c:\n        return None\n": "",
+        "c / (b + math.sqrt(b * b - a * c))": "(math.sqrt(x @ x) - ra - rb) / math.sqrt(a)",
+    },
 )
 mistakes(
     "OVERLAP_ALWAYS_HITS",
@@ -612,72 +386,32 @@ mistakes(
     "Up to the end of the step the bodies move as if they had not met: the impact comes at a sample, after that.",
     "Find the time of contact inside the step, move there, apply the impact, then move on for the rest of the step with the new velocities.",
     kind="consequence",
-).body(
+).edit(
     "simulate_head_on",
-    """
-        n = round(t_end / h)
-        x, v = np.array(x0, float), np.array(v0, float)
-        rows = [(x, v)]
-        for i in range(n):
-            x = x + v * h
-            if x[1] - x[0] <= 2 * radius and v[0] > v[1]:
-                j = (1 + restitution) * (v[0] - v[1]) / (1 / m[0] + 1 / m[1])
-                v = v + np.array([-j / m[0], j / m[1]])
-            rows.append((x, v))
-        return h * np.arange(n + 1), np.array([r[0] for r in rows]), np.array([r[1] for r in rows])
-    """,
-).body(
+    {
+        "gap / closing if 0 < closing and gap <= closing * h else h": "h",
+        "wait < h": "closing > 0 and xb - xa <= 2 * radius",
+    },
+).edit(
     "simulate_drop",
-    """
-        n = round(t_end / h)
-        rows, z, v = [(z0, v0)], z0, v0
-        for i in range(n):
-            z, v = z + v * h - g * h * h / 2, v - g * h
-            if z < radius and v < 0:
-                z, v = radius, -restitution * v
-                if v <= g * h:
-                    v = 0.0
-            rows.append((z, v))
-        return h * np.arange(n + 1), [r[0] for r in rows], [r[1] for r in rows]
-    """,
+    {
+        "math.sqrt(v[i] ** 2 + 2 * g * max(z[i] - radius, 0.0))": "-v[i + 1]",
+        "h - (v[i] + speed) / g": "0.0",
+        "return t, z, v": "return t, list(z), list(v)",
+    },
 )
 mistakes(
     "REST_OF_STEP_LOST",
     "After the impact the bodies stand still until the step ends: the rest of it is lost.",
     "A contact at time s into the step leaves h - s: move on for that time with the new velocities.",
-).body(
+).edit(
     "simulate_head_on",
-    """
-        n = round(t_end / h)
-        x, v = np.array(x0, float), np.array(v0, float)
-        rows = [(x, v)]
-        for i in range(n):
-            gap, closing = x[1] - x[0] - 2 * radius, v[0] - v[1]
-            if closing > 0 and gap <= closing * h:
-                x = x + v * (gap / closing)
-                j = (1 + restitution) * (v[0] - v[1]) / (1 / m[0] + 1 / m[1])
-                v = v + np.array([-j / m[0], j / m[1]])
-            else:
-                x = x + v * h
-            rows.append((x, v))
-        return h * np.arange(n + 1), np.array([r[0] for r in rows]), np.array([r[1] for r in rows])
-    """,
-).body(
-    "simulate_drop",
-    """
-        n = round(t_end / h)
-        rows, z, v = [(z0, v0)], z0, v0
-        for i in range(n):
-            ahead = z + v * h - g * h * h / 2
-            if ahead < radius:
-                z, v = radius, restitution * math.sqrt(v * v + 2 * g * max(z - radius, 0.0))
-                v = v if v > g * h else 0.0
-            else:
-                z, v = ahead, v - g * h
-            rows.append((z, v))
-        return h * np.arange(n + 1), [r[0] for r in rows], [r[1] for r in rows]
-    """,
-)
+    {
+        "max(xb - xa - 2 * radius, 0.0)": "xb - xa - 2 * radius",
+        "wait < h": "0 < closing and gap <= closing * h",
+        "xa + va * (h - wait), xb + vb * (h - wait)": "xa, xb",
+    },
+).edit("simulate_drop", {"h - (v[i] + speed) / g": "0.0", "return t, z, v": "return t, list(z), list(v)"})
 mistakes(
     "EQUAL_MASSES_ASSUMED",
     "Your code uses one mass for both bodies.",
@@ -699,27 +433,20 @@ mistakes(
     "VELOCITIES_SCALED",
     "Along the normal the velocities are those after an impact without loss, each multiplied by e.",
     "e is the speed of parting over that of approach: it belongs in the factor 1 + e of J, and nowhere else.",
-).body(
+).around(
     "resolve",
     """
-        closing = (va - vb) @ normal
-        if closing <= 0:
+        if (va - vb) @ normal <= 0:
             return va, vb
-        impulse = 2 * closing / (1 / ma + 1 / mb) * normal
-        return restitution * (va - impulse / ma), restitution * (vb + impulse / mb)
+        return tuple(restitution * v for v in _right(ma, mb, va, vb, normal, 1.0))
     """,
-).body(
+).around(
     "resolve",
     """
-        closing = (va - vb) @ normal
-        if closing <= 0:
+        if (va - vb) @ normal <= 0:
             return va, vb
-        impulse = 2 * closing / (1 / ma + 1 / mb)
-        a, b = va @ normal, vb @ normal
-        return (
-            va + (restitution * (a - impulse / ma) - a) * normal,
-            vb + (restitution * (b + impulse / mb) - b) * normal,
-        )
+        after = _right(ma, mb, va, vb, normal, 1.0)
+        return tuple(v - (1 - restitution) * (v @ normal) * normal for v in after)
     """,
 ).edit(
     "simulate_head_on",
@@ -747,22 +474,13 @@ mistakes(
     "The ball is not on the floor where it must be at rest already.",
     "Put the ball to rest the first time that it touches the floor at a speed of at most g h: z = radius and v = 0 from then on. Compare with g h itself: not with a fixed speed, and not with a part of g h.",
     true_too=("SINKS_THROUGH_FLOOR",),
-).body(
+).edit(
     "simulate_drop",
-    """
-        n = round(t_end / h)
-        rows, z, v = [(z0, v0)], z0, v0
-        for i in range(n):
-            ahead = z + v * h - g * h * h / 2
-            if ahead < radius:
-                speed = math.sqrt(v * v + 2 * g * max(z - radius, 0.0))
-                left = max(h - (v + speed) / g, 0.0)
-                up = max(restitution * speed, g * left / 2)
-                ahead, v = radius + up * left - g * left * left / 2, up - g * left + g * h
-            z, v = ahead, v - g * h
-            rows.append((z, v))
-        return h * np.arange(n + 1), [r[0] for r in rows], [r[1] for r in rows]
-    """,
+    {
+        "up = restitution * speed": "up = max(restitution * speed, g * left / 2)",
+        "resting = up <= g * h": "resting = False",
+        "return t, z, v": "return t, list(z), list(v)",
+    },
 )
 mistakes(
     "RESTITUTION_AS_ENERGY",
@@ -831,14 +549,12 @@ mistakes(
     "The ball stops in the air where it is slow, as at the top of its flight.",
     "Slow is not enough: it rests where it touches the floor with a speed of at most g h, and flies on everywhere else.",
 ).edit(
-    "simulate_drop",
-    {
-        "        if resting:\n            z[i + 1], v[i + 1] = radius, 0.0\n": "        if resting or abs(v[i]) <= g * h:\n            z[i + 1], v[i + 1] = z[i], 0.0\n"
-    },
+    "simulate_drop", {"if resting:": "if resting or abs(v[i]) <= g * h:", "= radius, 0.0": "= z[i], 0.0"}
 ).edit(
     "simulate_drop",
     {
-        "        if resting:\n            z[i + 1], v[i + 1] = radius, 0.0\n": "        if resting or (abs(v[i]) <= g * h and z[i] < 0.9 * z0):\n            z[i + 1], v[i + 1] = z[i], 0.0\n"
+        "if resting:": "if resting or (abs(v[i]) <= g * h and z[i] < 0.9 * z0):",
+        "= radius, 0.0": "= z[i], 0.0",
     },
 ).edit(
     "simulate_drop",
@@ -850,40 +566,12 @@ mistakes(
     "RADII_NOT_SQUARED",
     "In the quadratic, the sum of the radii, or twice the sum, appears where its square belongs.",
     "At contact |dx + dv t| = ra + rb. Squaring both sides gives (ra + rb)**2 on the right.",
-).body(
-    "time_of_impact",
-    """
-        x, v = xb - xa, vb - va
-        a, b, c = v @ v, x @ v, x @ x - (ra + rb)
-        if b >= 0:
-            return None
-        if c <= 0:
-            return 0.0
-        if b * b < a * c:
-            return None
-        t = (-b - math.sqrt(b * b - a * c)) / a
-        return float(t) if t <= dt else None
-    """,
-)
+).edit("time_of_impact", {"(ra + rb) ** 2": "(ra + rb)"})
 mistakes(
     "RADII_SQUARED_APART",
     "The radii are squared separately and then added.",
     "Add the radii first. Where a square is needed, it is (ra + rb)**2, which is more than ra**2 + rb**2.",
-).body(
-    "time_of_impact",
-    """
-        x, v = xb - xa, vb - va
-        a, b, c = v @ v, x @ v, x @ x - (ra**2 + rb**2)
-        if b >= 0:
-            return None
-        if c <= 0:
-            return 0.0
-        if b * b < a * c:
-            return None
-        t = (-b - math.sqrt(b * b - a * c)) / a
-        return float(t) if t <= dt else None
-    """,
-)
+).edit("time_of_impact", {"(ra + rb) ** 2": "(ra**2 + rb**2)"})
 mistakes(
     "GAP_OVER_SPEED",
     "The gap between the surfaces is divided by the speed, as if every meeting were head on.",
@@ -919,7 +607,8 @@ mistakes(
 ).edit(
     "time_of_impact",
     {
-        "    if b * b < a * c:": "    reach = max(np.linalg.norm(va), np.linalg.norm(vb)) * dt\n    if math.sqrt(x @ x) - ra - rb > reach or b * b < a * c:"
+        "a, b, c =": "reach = max(np.linalg.norm(va), np.linalg.norm(vb)) * dt\n    a, b, c =",
+        "if b * b": "if math.sqrt(x @ x) - ra - rb > reach or b * b",
     },
 )
 mistakes(
@@ -927,18 +616,13 @@ mistakes(
     "Contacts are missed where the spheres, moving on, would still overlap at dt. All others are found.",
     "Only the first of the two roots is asked for: the later one may lie beyond dt.",
     kind="fact",
-).edit(
-    "time_of_impact",
-    {
-        "    return float(t) if t <= dt else None": "    return float(t) if (b + math.sqrt(b * b - a * c)) / a <= dt else None"
-    },
-)
+).edit("time_of_impact", {"if t <= dt": "if (b + math.sqrt(b * b - a * c)) / a <= dt"})
 mistakes(
     "CLOSEST_AFTER_STEP",
     "Contacts are missed where the spheres would be closest only after dt. All others are found.",
     "They touch before that: it is the first root that has to lie within dt.",
     kind="fact",
-).edit("time_of_impact", {"    if b * b < a * c:": "    if b > a * dt or b * b < a * c:"})
+).edit("time_of_impact", {"if b * b < a * c:": "if b > a * dt or b * b < a * c:"})
 mistakes(
     "CONTACTS_MISSED",
     "Some bodies that meet within the step get None.",
@@ -966,30 +650,14 @@ mistakes(
     "TOUCHING_NEEDS_OVERLAP",
     "Bodies that touch exactly, with a depth of zero, do not count as touching.",
     "`touching` is depth >= 0, not depth > 0, and the depth is ra + rb - d (for the plane r less the height), with nothing added.",
-).around(
-    "detect_sphere_sphere",
-    """
-        _, normal, depth = _right(xa, ra, xb, rb)
-        return depth > 0, normal, depth
-    """,
-).around(
-    "detect_sphere_plane",
-    """
-        _, normal, depth = _right(x, r, point, normal)
-        return depth > 0, normal, depth
-    """,
+).edit("detect_sphere_sphere", {"depth >= 0": "depth > 0"}).edit(
+    "detect_sphere_plane", {"depth >= 0": "depth > 0"}
 )
 mistakes(
     "CONTACT_MARGIN",
     "Touching is decided by a limit other than zero: a small gap counts as touching, or a small overlap does not.",
     "Remove the margin: touching is depth >= 0.",
-).around(
-    "detect_sphere_sphere",
-    """
-        _, normal, depth = _right(xa, ra, xb, rb)
-        return depth >= -0.01, normal, depth
-    """,
-)
+).edit("detect_sphere_sphere", {"depth >= 0": "depth >= -0.01"})
 mistakes(
     "SLIP_TIMES_E",
     "The whole relative velocity is multiplied by e, its part across the normal too.",
@@ -1024,32 +692,11 @@ mistakes(
     "RESTITUTION_DROPPED_WHEN_SLOW",
     "Slow bodies part with less than e times the speed at which they met, or stay together.",
     "e is the same at every speed, also for slow bodies.",
-).body(
-    "impulse_1d",
-    """
-        closing = max(va - vb, 0.0)
-        return (1 + (restitution if closing > 0.01 else 0.0)) * closing / (1 / ma + 1 / mb)
-    """,
-).body(
-    "resolve",
-    """
-        va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
-        closing = max((va - vb) @ n, 0.0)
-        e = restitution if closing > 0.01 else 0.0
-        impulse = (1 + e) * closing / (1 / ma + 1 / mb) * n
-        return va - impulse / ma, vb + impulse / mb
-    """,
+).edit("impulse_1d", {"- vb, restitution)": "- vb, restitution if va - vb > 0.01 else 0.0)"}).edit(
+    "resolve", {"@ n, restitution)": "@ n, restitution if (va - vb) @ n > 0.01 else 0.0)"}
 ).edit(
     "impulse_1d", {"va - vb, restitution": "va - vb, restitution * max(va - vb, 0.0) / (abs(va - vb) + 0.01)"}
-).body(
-    "resolve",
-    """
-        va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
-        closing = (va - vb) @ n
-        impulse = _impulse(ma, mb, closing, restitution * closing / (abs(closing) + 0.01)) * n
-        return va - impulse / ma, vb + impulse / mb
-    """,
-)
+).edit("resolve", {"@ n, restitution)": "@ n, restitution * ((va - vb) @ n) / (abs((va - vb) @ n) + 0.01))"})
 mistakes(
     "FRICTION_COEFFICIENT_CAPPED",
     "The coefficient of friction is cut off at one.",
@@ -1088,43 +735,15 @@ mistakes(
     "Of these pairs that approach, only the slowest keep their velocities. The others are right.",
     "Every pair with (va - vb) . n > 0 gets its impulse, however slow it is. Compare with zero itself, without a small number or a tolerance.",
     kind="consequence",
-).body(
-    "impulse_1d",
-    """
-        s = va - vb
-        if s <= 1e-3:
-            return 0.0
-        return (1 + restitution) * s / (1 / ma + 1 / mb)
-    """,
-).body(
-    "impulse_1d",
-    """
-        s = va - vb
-        if s <= 0 or np.isclose(va, vb):
-            return 0.0
-        return (1 + restitution) * s / (1 / ma + 1 / mb)
-    """,
+).around("impulse_1d", "return _right(ma, mb, va, vb, restitution) if va - vb > 1e-3 else 0.0").around(
+    "impulse_1d", "return 0.0 if np.isclose(va, vb) else _right(ma, mb, va, vb, restitution)"
 )
 mistakes(
     "SLOW_SLIPS_SPARED",
     "Of these pairs that slide past each other, only the slowest have no friction. The others are right.",
     "Jt = min(mu J, |vt| / (1/ma + 1/mb)), however slow the slip is. vt has no direction only where it is zero.",
     kind="consequence",
-).body(
-    "resolve_with_friction",
-    """
-        closing = (va - vb) @ normal
-        if closing <= 0:
-            return va, vb
-        give = 1 / ma + 1 / mb
-        along = (1 + restitution) * closing / give
-        slip = vb - va + closing * normal
-        speed = np.linalg.norm(slip)
-        across = min(mu * along, speed / give) if speed > 0.01 else 0.0
-        impulse = along * normal - (across * slip / speed if across else 0.0)
-        return va - impulse / ma, vb + impulse / mb
-    """,
-)
+).edit("resolve_with_friction", {"if across > 0": "if speed > 0.01"})
 mistakes(
     "FRICTION_ONLY_WHILE_SLIDING",
     "Where friction could stop the slip, there is none.",
@@ -1140,16 +759,7 @@ mistakes(
     "The normal is wrong only where the centres lie very close together.",
     "Centres coincide where their distance is zero, and not where it is small. All others have a direction: (xb - xa)/d.",
     kind="consequence",
-).body(
-    "detect_sphere_sphere",
-    """
-        apart = xb - xa
-        distance = float(np.linalg.norm(apart))
-        normal = np.eye(1, len(apart))[0] if np.allclose(xa, xb) else apart / distance
-        depth = ra + rb - distance
-        return depth >= 0, normal, depth
-    """,
-)
+).edit("detect_sphere_sphere", {"if distance > 0": "if not np.allclose(xa, xb)"})
 mistakes(
     "TIME_TO_FLOOR_SIGN",
     "The time to the floor is computed with the wrong sign of v.",
@@ -1212,21 +822,13 @@ mistakes(
     "PATH_MIRRORED",
     "A ball that would be in the floor at the end of the step is put as far above it, or e times as far.",
     "Gravity does not turn round at the floor: fly up to the contact, and from there with e times the speed at the floor for the rest of the step.",
-).body(
+).edit(
     "simulate_drop",
-    """
-        n = round(t_end / h)
-        t, z, v = h * np.arange(n + 1), np.full(n + 1, float(radius)), np.zeros(n + 1)
-        z[0], v[0] = z0, v0
-        for i in range(n):
-            z[i + 1], v[i + 1] = z[i] + v[i] * h - g * h * h / 2, v[i] - g * h
-            if z[i + 1] < radius:
-                z[i + 1], v[i + 1] = 2 * radius - z[i + 1], -restitution * v[i + 1]
-                if v[i + 1] <= g * h:
-                    z[i + 1 :], v[i + 1 :] = radius, 0.0
-                    break
-        return t, z, v
-    """,
+    {
+        "math.sqrt(v[i] ** 2 + 2 * g * max(z[i] - radius, 0.0))": "-v[i + 1]",
+        "up * left - g * left * left / 2": "radius - z[i + 1]",
+        "up - g * left\n": "up\n",
+    },
 )
 mistakes(
     "IN_THE_FLOOR",
@@ -1274,74 +876,19 @@ mistakes(
     "LAUNCH_IGNORED",
     "A ball that starts on the floor and moves upwards does not fly.",
     "A ball that starts on the floor with v0 > g h flies off, although it touches the floor.",
-).around(
-    "simulate_drop",
-    """
-        t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
-        if z0 <= radius:
-            z[1:], v[1:] = radius, 0.0
-        return t, z, v
-    """,
-)
+).edit("simulate_drop", {"resting = False": "resting = z0 <= radius"})
 mistakes(
     "VELOCITIES_LATE",
     "The positions are right; the velocities at the first sample after the impact are still the old ones.",
     "Row i of both belongs to the time i h: store the velocity after the step beside the position after the step.",
-).body(
-    "simulate_head_on",
-    """
-        N = round(t_end / h)
-        t = np.arange(N + 1) * h
-        x, v = np.zeros((N + 1, 2)), np.zeros((N + 1, 2))
-        x[0], v[0] = x0, v0
-        speed = np.array(v0, dtype=float)
-        for i in range(N):
-            v[i + 1] = speed
-            closing = speed[0] - speed[1]
-            gap = x[i, 1] - x[i, 0] - 2 * radius
-            tau = h
-            if closing > 0 and gap <= closing * h:
-                tau = max(gap, 0) / closing
-                J = impulse_1d(m[0], m[1], speed[0], speed[1], restitution)
-                after = speed + np.array([-J / m[0], J / m[1]])
-            else:
-                after = speed
-            x[i + 1] = x[i] + speed * tau + after * (h - tau)
-            speed = after
-        return t, x, v
-    """,
-)
+).edit("simulate_head_on", {"return t, x, v": "return t, x, np.vstack((v[:1], v[:-1]))"})
 mistakes(
     "RESTS_ELSEWHERE",
     "The ball comes to rest, but not at z = radius.",
     "z is the height of its centre: at rest z = radius and v = 0, in every row up to the last.",
-).body(
+).edit(
     "simulate_drop",
-    """
-        N = round(t_end / h)
-        t = np.arange(N + 1) * h
-        z, v = float(z0), float(v0)
-        zs, vs = [z], [v]
-        resting = False
-        for i in range(N):
-            if not resting:
-                z_new = z + v * h - g * h**2 / 2
-                if z_new > radius:
-                    z, v = z_new, v - g * h
-                else:
-                    speed = math.sqrt(v**2 + 2 * g * (z - radius))
-                    left = h - (v + speed) / g
-                    up = restitution * speed
-                    if up <= g * h:
-                        resting = True
-                        v = 0.0
-                    else:
-                        z = radius + up * left - g * left**2 / 2
-                        v = up - g * left
-            zs.append(z)
-            vs.append(v)
-        return t, np.array(zs), np.array(vs)
-    """,
+    {"= radius, 0.0": "= z[i], 0.0", "= radius + (0.0 if resting else ": "= z[i] if resting else radius + ("},
 )
 mistakes(
     "ONLY_WITHOUT_REBOUND",
@@ -1367,15 +914,7 @@ mistakes(
     "Of these pairs, only those are wrong whose masses differ by less than one per cent.",
     "The formula holds for all masses: use each as it is given, without a special case.",
     kind="consequence",
-).body(
-    "resolve",
-    """
-        va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
-        other = ma if abs(ma - mb) < 0.01 * ma else mb
-        impulse = _impulse(ma, other, (va - vb) @ n, restitution) * n
-        return va - impulse / ma, vb + impulse / other
-    """,
-)
+).around("resolve", "return _right(ma, ma if abs(ma - mb) < 0.01 * ma else mb, va, vb, normal, restitution)")
 mistakes(
     "WALL_ASSUMED_AT_REST",
     "The wall's own velocity does not count: the result is that of a wall at rest.",
@@ -1405,16 +944,12 @@ mistakes(
     "For spheres that overlap already and approach, your code returns a time before the start.",
     "Where |x| < R and they approach, they touch now: the answer is 0.0.",
     kind="consequence",
-).body(
+).edit(
     "time_of_impact",
-    """
-        x, v = np.subtract(xb, xa, dtype=float), np.subtract(vb, va, dtype=float)
-        a, b, c = v @ v, x @ v, x @ x - (ra + rb) ** 2
-        if b >= 0 or b * b < a * c:
-            return None
-        t = (-b - math.sqrt(b * b - a * c)) / a
-        return float(t) if t <= dt else None
-    """,
+    {
+        "    if c <= 0:\n        return 0.0\n": "",
+        "c / (b + math.sqrt(b * b - a * c))": "(b - math.sqrt(b * b - a * c)) / a",
+    },
 )
 mistakes(
     "SHORT_HOP_MISSED",
@@ -1484,47 +1019,17 @@ mistakes(
     "Friction takes too much of the slip. Along the normal all is right.",
     "Jt = min(mu J, |vt| / (1/ma + 1/mb)), for every mu. Compute both by hand for one pair: which of them does your friction exceed?",
     kind="consequence",
-).body(
-    "resolve_with_friction",
-    """
-        mu = mu or 0.5
-        n = np.asarray(normal)
-        u = vb - va
-        s = -(u @ n)
-        if s <= 0:
-            return va, vb
-        inv = 1 / ma + 1 / mb
-        J = (1 + restitution) * s / inv
-        vt = u - (u @ n) * n
-        size = np.linalg.norm(vt)
-        P = J * n
-        if size > 0:
-            P = P - min(mu * J, size / inv) * vt / size
-        return va - P / ma, vb + P / mb
-    """,
-)
+).around("resolve_with_friction", "return _right(ma, mb, va, vb, normal, restitution, mu or 0.5)")
 mistakes(
     "VELOCITIES_APART",
     "The positions are right, and the velocities beside them are wrong.",
     "Row i of both belongs to the time i h. Store the velocity that the step computes, with its sign; a difference of two positions is the mean of a whole step.",
     kind="consequence",
-).body(
+).around(
     "simulate_head_on",
     """
-        n = round(t_end / h)
-        t, x, v = h * np.arange(n + 1), np.empty((n + 1, 2)), np.empty((n + 1, 2))
-        x[0], v[0] = x0, v0
-        va, vb = v0
-        for i in range(n):
-            (xa, xb) = x[i]
-            c, gap = va - vb, max(xb - xa - 2 * radius, 0.0)
-            w = gap / c if 0 < c and gap <= c * h else h
-            xa, xb = xa + va * w, xb + vb * w
-            if w < h:
-                J = (1 + restitution) * c / (1 / m[0] + 1 / m[1])
-                va, vb = va - J / m[0], vb + J / m[1]
-            x[i + 1] = xa + va * (h - w), xb + vb * (h - w)
-            v[i + 1] = (x[i + 1] - x[i]) / h
+        t, x, v = _right(m, x0, v0, radius, restitution, t_end, h)
+        v[1:] = np.diff(x, axis=0) / h
         return t, x, v
     """,
 )
@@ -1559,25 +1064,12 @@ mistakes(
     "QUADRATIC_MIXED",
     "Two forms of the quadratic formula are mixed: the one with b = x . v, and the one with b = 2 x . v.",
     "With b = x . v the root is (-b - sqrt(b**2 - a c))/a; with b = 2 x . v it is (-b - sqrt(b**2 - 4 a c))/(2 a).",
-).body(
+).edit(
     "time_of_impact",
-    """
-        x = xb - xa
-        v = vb - va
-        R = ra + rb
-        a = v @ v
-        b = 2 * (x @ v)
-        c = x @ x - R * R
-        if b >= 0:
-            return None
-        if c < 0:
-            return 0.0
-        disc = b * b - a * c
-        if disc < 0:
-            return None
-        t = (-b - np.sqrt(disc)) / (2 * a)
-        return t if t <= dt else None
-    """,
+    {
+        "v @ v, nearing": "v @ v, 2 * nearing",
+        "c / (b + math.sqrt(b * b - a * c))": "(b - math.sqrt(b * b - a * c)) / (2 * a)",
+    },
 )
 mistakes(
     "FALL_WITHOUT_TWO",
@@ -2194,18 +1686,8 @@ mistakes(
     "HISTORIES_SWAPPED",
     "The positions and the velocities are returned in each other's place.",
     "Return the times first, then the positions, then the velocities: (t, x, v), or (t, z, v) for the drop.",
-).around(
-    "simulate_head_on",
-    """
-        t, x, v = _right(m, x0, v0, radius, restitution, t_end, h)
-        return t, v, x
-    """,
-).around(
-    "simulate_drop",
-    """
-        t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
-        return t, v, z
-    """,
+).edit("simulate_head_on", {"return t, x, v": "return t, v, x"}).edit(
+    "simulate_drop", {"return t, z, v": "return t, v, z"}
 )
 mistakes(
     "VELOCITIES_UNSIGNED",

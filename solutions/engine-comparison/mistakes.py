@@ -86,18 +86,7 @@ mistakes(
     "A measured slope seldom is.",
     "Round it: round(math.log2(ratio)).",
     kind="fact",
-).around(
-    "characterise",
-    """
-        def end(n):
-            q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
-            return np.array([q[-1][0], v[-1][0] / omega])
-
-        coarse, middle, fine = end(16), end(32), end(64)
-        return math.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine))
-    """,
-    of="_order",
-)
+).edit("characterise", {"return round(": "return ("}, of="_order")
 mistakes(
     "SYMPLECTIC_STEP_TOO_SMALL",
     "Engines that lose area pass the test: what they lose in the step that is looked at lies within what the test allows.",
@@ -135,38 +124,17 @@ mistakes(
     "DAMPING_AT_DT",
     "The rate still contains the error of large steps.",
     "Use a much smaller step, such as dt / 1000.",
-).body(
-    "characterise",
-    """
-        _, v = engine.run("free", [0.0], [1.0], dt, 20, [0.0])
-        return -math.log(v[-1][0]) / (20 * dt)
-    """,
-    of="_linear_damping",
-)
+).edit("characterise", {"dt / 1000, 100": "dt, 20"}, of="_linear_damping")
 mistakes(
     "DAMPING_PER_STEP",
     "The result is the loss of ln|v| per step or per run, not per second.",
     "Divide the change of ln|v| by the time between the two samples, n times h.",
-).body(
-    "characterise",
-    """
-        _, v = engine.run("free", [0.0], [1.0], dt / 1000, 1000, [0.0])
-        return -math.log(v[-1][0])
-    """,
-    of="_linear_damping",
-)
+).edit("characterise", {"1000, 100": "1000, 1000", " / (n * h)": ""}, of="_linear_damping")
 mistakes(
     "DAMPING_OF_ENERGY",
     "The rate is twice as large as it should be.",
     "Energy decays twice as fast as speed. Take ln(v0/v), and divide it by all the time between these two speeds.",
-).body(
-    "characterise",
-    """
-        _, v = engine.run("free", [0.0], [1.0], dt / 1000, 100, [0.0])
-        return -math.log(v[-1][0] ** 2) / (dt / 10)
-    """,
-    of="_linear_damping",
-)
+).edit("characterise", {"v[-1][0])": "v[-1][0] ** 2)"}, of="_linear_damping")
 mistakes(
     "DAMPING_OF_ENVELOPE",
     "The rate is about half of what it should be.",
@@ -202,37 +170,21 @@ mistakes(
         return _bisect(stable, high - 0.1, high, 0.01)
     """,
     of="_max_stable_z",
-).body(
+).edit(
     "characterise",
-    """
-        def stable(z):
-            return max(abs(np.linalg.eigvals(_spring_step(engine, omega, z)))) <= 1 + 1e-8
-
-        low = 0.05
-        if not stable(low):
-            return 0.0
-        while stable(low + 1.99):
-            low += 1.99
-            if low >= 10:
-                return math.inf
-        return _bisect(stable, low, low + 1.99, 0.004 * low)
-    """,
+    {
+        "stable(low + 0.5)": "stable(low + 1.99)",
+        "low += 0.5": "low += 1.99",
+        "low, low + 0.5": "low, low + 1.99",
+    },
     of="_max_stable_z",
-).body(
+).edit(
     "characterise",
-    """
-        def stable(z):
-            return max(abs(np.linalg.eigvals(_spring_step(engine, omega, z)))) <= 1 + 1e-8
-
-        low = 0.05
-        if not stable(low):
-            return 0.0
-        while stable(low + 2.5):
-            low += 2.5
-            if low >= 10:
-                return math.inf
-        return _bisect(stable, low, low + 2.5, 0.002 * low)
-    """,
+    {
+        "stable(low + 0.5)": "stable(low + 2.5)",
+        "low += 0.5": "low += 2.5",
+        "low, low + 0.5, 0.004": "low, low + 2.5, 0.002",
+    },
     of="_max_stable_z",
 )
 mistakes(
@@ -305,24 +257,8 @@ mistakes(
     "Only engines with soft contact get a wrong ratio. Perhaps the body is pushed while it is still sinking in.",
     "Let the body come to rest first, and start each push from where it lies.",
     kind="consequence",
-).program(
-    "characterise",
-    """
-        _at_rest = _settled
-        _ratio = _anisotropy
-
-
-        def _anisotropy(engine, info):
-            global _settled
-
-            def _settled(engine, info):
-                return [0.0, 0.0, info["radius"]]
-
-            try:
-                return _ratio(engine, info)
-            finally:
-                _settled = _at_rest
-    """,
+).edit(
+    "characterise", {"_settled(engine, info), round": '[0.0, 0.0, info["radius"]], round'}, of="_anisotropy"
 )
 mistakes(
     "PENETRATION_SIGN",
@@ -366,26 +302,12 @@ mistakes(
     "RESTITUTION_SIGN",
     "For at least one engine the ratio is negative.",
     "The velocity changes its sign at the wall, and the report asks for the ratio of the speeds. Does the body reach the wall?",
-).around(
-    "characterise",
-    """
-        ratio, face = _right(engine, info)
-        return -ratio, face
-    """,
-    of="_slow_hit",
-)
+).edit("characterise", {"return -v": "return v"}, of="_slow_hit")
 mistakes(
     "RESTITUTION_SQUARED",
     "The result is the square of the right ratio, or its square root.",
     "Divide the speed after the hit by the speed before it, without a square.",
-).around(
-    "characterise",
-    """
-        ratio, face = _right(engine, info)
-        return ratio**2, face
-    """,
-    of="_slow_hit",
-)
+).edit("characterise", {"-v[hit][0] / v[hit - 1][0]": "(v[hit][0] / v[hit - 1][0]) ** 2"}, of="_slow_hit")
 mistakes(
     "RESTITUTION_WITH_DRAG",
     "The ratio is too low for engines with damping: speed that is lost before the hit, or after it, counts as lost in the hit.",
@@ -543,57 +465,28 @@ mistakes(
     "IGNORES_MISSING",
     "Your code accepts an engine whose report lacks a required key, or has None there.",
     "What was not measured meets nothing: neither a value of None nor a key that is not there.",
-).body(
-    "choose_engine",
-    """
-        def fits(report):
-            return all(
-                report.get(r["key"]) is None or _OPERATORS[r["op"]](report[r["key"]], r["value"])
-                for r in requirements
-            )
-
-        fitting = [name for name in reports if fits(reports[name])]
-        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
-    """,
-)
+).edit("choose_engine", {"is not None and": "is None or"})
 mistakes(
     "COST_BEFORE_REQUIREMENTS",
     "Your code takes the cheapest of all engines and only then looks at the requirements.",
     "First keep the engines that meet every requirement, then take the cheapest of those.",
-).body(
+).around(
     "choose_engine",
     """
-        name = min(reports, key=lambda name: reports[name]["cost"])
-        report = reports[name]
-        fits = all(
-            report.get(r["key"]) is not None and _OPERATORS[r["op"]](report[r["key"]], r["value"])
-            for r in requirements
-        )
-        return name if fits else None
+        cheapest = min(reports, key=lambda name: reports[name]["cost"])
+        return _right({cheapest: reports[cheapest]}, requirements)
     """,
 )
 mistakes(
     "COST_REVERSED",
     "Of the engines that fit, your code picks the most expensive one.",
     "Take the one with the lowest cost.",
-).around(
-    "choose_engine",
-    """
-        turned = {name: {**report, "cost": -report["cost"]} for name, report in reports.items()}
-        return _right(turned, requirements)
-    """,
-)
+).edit("choose_engine", {'reports[name]["cost"]': '-reports[name]["cost"]'})
 mistakes(
     "COST_IGNORED",
     "Of the engines that fit, your code picks one that is not the cheapest.",
     "Take the one with the lowest cost.",
-).around(
-    "choose_engine",
-    """
-        equal = {name: {**report, "cost": 0.0} for name, report in reports.items()}
-        return _right(equal, requirements)
-    """,
-).around(
+).edit("choose_engine", {'reports[name]["cost"]': "0.0"}).around(
     "choose_engine",
     """
         fitting = [name for name in reports if _right({name: reports[name]}, requirements)]
@@ -604,17 +497,13 @@ mistakes(
     "ANY_INSTEAD_OF_ALL",
     "Your code picks an engine that does not meet all of the requirements.",
     "Every requirement must be met, not just one of them.",
-).body(
+).edit(
     "choose_engine",
-    """
-        def met(report):
-            return sum(
-                report.get(r["key"]) is not None and _OPERATORS[r["op"]](report[r["key"]], r["value"])
-                for r in requirements
-            )
-
-        return min(reports, key=lambda name: (-met(reports[name]), reports[name]["cost"]))
-    """,
+    {
+        "return all(": "return sum(",
+        "(name for name, report in reports.items() if fits(report))": "reports",
+        'reports[name]["cost"],\n        default=None,': '(-fits(reports[name]), reports[name]["cost"]),',
+    },
 )
 mistakes(
     "ALL_MUST_FIT",
@@ -644,9 +533,7 @@ mistakes(
     '"<=" and ">=" include equality.',
 ).program(
     "choose_engine",
-    """
-        _OPERATORS = {"<=": operator.lt, ">=": operator.gt, "==": operator.eq}
-    """,
+    '_OPERATORS = {"<=": operator.lt, ">=": operator.gt, "==": operator.eq}',
 )
 mistakes(
     "OPERATOR_CONFUSED",
@@ -654,9 +541,7 @@ mistakes(
     '"<=" means that the report\'s value is at most the required one, ">=" at least, and "==" equal.',
 ).program(
     "choose_engine",
-    """
-        _OPERATORS = {"<=": operator.ge, ">=": operator.le, "==": operator.eq}
-    """,
+    '_OPERATORS = {"<=": operator.ge, ">=": operator.le, "==": operator.eq}',
 )
 mistakes(
     "DEPENDS_ON_NAMES",
@@ -729,9 +614,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["mujoco"]["licence"] = ("Proprietary", "https://www.roboti.us/license.html")
-    """,
+    '_FACTS["mujoco"]["licence"] = ("Proprietary", "https://www.roboti.us/license.html")',
 )
 mistakes(
     "NOT_SPDX",
@@ -740,9 +623,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["physx"]["licence"] = ("BSD", "https://github.com/NVIDIA-Omniverse/PhysX")
-    """,
+    '_FACTS["physx"]["licence"] = ("BSD", "https://github.com/NVIDIA-Omniverse/PhysX")',
 )
 mistakes(
     "DATE_BEFORE_FACT",
@@ -757,9 +638,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["ode"]["default_step_s"] = (0.001, "https://classic.gazebosim.org")
-    """,
+    '_FACTS["ode"]["default_step_s"] = (0.001, "https://classic.gazebosim.org")',
 )
 mistakes(
     "INTEGRATOR_BY_NAME",
@@ -768,9 +647,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["mujoco"]["default_integrator"] = ("explicit_euler", "https://mujoco.readthedocs.io")
-    """,
+    '_FACTS["mujoco"]["default_integrator"] = ("explicit_euler", "https://mujoco.readthedocs.io")',
 )
 mistakes(
     "STEP_IS_THERE",
@@ -779,9 +656,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["bullet"]["default_step_s"] = (None, "https://github.com/bulletphysics/bullet3")
-    """,
+    '_FACTS["bullet"]["default_step_s"] = (None, "https://github.com/bulletphysics/bullet3")',
 )
 mistakes(
     "STEP_OF_OTHERS",
@@ -790,9 +665,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["mujoco"]["default_step_s"] = (0.01, "https://mujoco.readthedocs.io")
-    """,
+    '_FACTS["mujoco"]["default_step_s"] = (0.01, "https://mujoco.readthedocs.io")',
 )
 mistakes(
     "LANGUAGE_OF_INTERFACE",
@@ -801,9 +674,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["ode"]["language"] = ("C", "https://ode.org")
-    """,
+    '_FACTS["ode"]["language"] = ("C", "https://ode.org")',
 )
 mistakes(
     "GAZEBO_SIM_USES_DART",
@@ -812,9 +683,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["ode"]["used_by"] = (["Gazebo Sim"], "https://gazebosim.org")
-    """,
+    '_FACTS["ode"]["used_by"] = (["Gazebo Sim"], "https://gazebosim.org")',
 )
 mistakes(
     "SOURCE_NOT_A_URL",
@@ -823,9 +692,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["bullet"]["licence"] = ("Zlib", "its README")
-    """,
+    '_FACTS["bullet"]["licence"] = ("Zlib", "its README")',
 )
 mistakes(
     "NOT_A_DATE",
@@ -834,9 +701,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _AS_OF = "11/21/2026"
-    """,
+    '_AS_OF = "11/21/2026"',
 )
 mistakes(
     "PAIR_MISSING",
@@ -845,9 +710,7 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        del _FACTS["mujoco"]
-    """,
+    'del _FACTS["mujoco"]',
 )
 mistakes(
     "PAIR_TWICE_AND_MISSING",
@@ -876,33 +739,12 @@ mistakes(
     "Your code raises an exception where a report lacks a required key, or has None there.",
     "report.get(key) gives None for a missing key. Test for None first: such an engine does not fit.",
     kind="fact",
-).program(
-    "choose_engine",
-    """
-        import operator
-
-
-        def choose_engine(reports, requirements):
-            ops = {"<=": operator.le, ">=": operator.ge, "==": operator.eq}
-            fits = [
-                name
-                for name, report in reports.items()
-                if all(ops[need["op"]](report[need["key"]], need["value"]) for need in requirements)
-            ]
-            return min(fits, key=lambda name: reports[name]["cost"], default=None)
-    """,
-)
+).edit("choose_engine", {'report.get(r["key"]) is not None and ': ""})
 mistakes(
     "COST_ROUGH",
     "Costs that are close to each other are taken for equal.",
     "Compare the costs as they are, without rounding.",
-).around(
-    "choose_engine",
-    """
-        rough = {name: {**report, "cost": round(report["cost"], -1)} for name, report in reports.items()}
-        return _right(rough, requirements)
-    """,
-)
+).edit("choose_engine", {'reports[name]["cost"]': 'round(reports[name]["cost"], -1)'})
 mistakes(
     "FIRST_REQUIREMENT_ONLY",
     "Your code checks only one of the requirements.",
@@ -915,38 +757,32 @@ mistakes(
     kind="fact",
 ).program(
     "engine_facts",
-    """
-        _FACTS["ode"]["licence"] = ("GPL-3.0-only", "https://github.com/odedevs/ode")
-    """,
+    '_FACTS["ode"]["licence"] = ("GPL-3.0-only", "https://github.com/odedevs/ode")',
 )
 mistakes(
     "ORDER_WITHOUT_LOG",
     "The result is two to the power of the order.",
     "Take math.log2 of the ratio, and round.",
-).body(
+).edit(
     "characterise",
-    """
-        def end(n):
-            q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
-            return np.array([q[-1][0], v[-1][0] / omega])
-
-        return round(np.linalg.norm(end(64) - end(128)) / np.linalg.norm(end(128) - end(256)))
-    """,
+    {
+        "fine = end(16), end(32), end(64)": "again, fine = end(64), end(128), end(128), end(256)",
+        "middle - fine": "again - fine",
+        "math.log2": "",
+    },
     of="_order",
 )
 mistakes(
     "ORDER_OTHER_LOG",
     "The result is a logarithm to another base than two.",
     "Halving the step divides the difference by two to the power of the order: take math.log2.",
-).body(
+).edit(
     "characterise",
-    """
-        def end(n):
-            q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
-            return np.array([q[-1][0], v[-1][0] / omega])
-
-        return round(math.log(np.linalg.norm(end(16) - end(32)) / np.linalg.norm(end(32) - end(64))))
-    """,
+    {
+        "fine = end(16), end(32),": "again, fine = end(16), end(32), end(32),",
+        "middle - fine": "again - fine",
+        "math.log2": "math.log",
+    },
     of="_order",
 )
 mistakes("NOT_A_NUMBER").body(
@@ -1004,107 +840,42 @@ mistakes(
     "EQUALITY_BY_IDENTITY",
     'Some equal numbers do not count as equal where the operator is "==".',
     "Compare with ==, not with `is`.",
-).program(
-    "choose_engine",
-    """
-        def meets(report, requirement):
-            value = report.get(requirement["key"])
-            if value is None:
-                return False
-            if requirement["op"] == "<=":
-                return value <= requirement["value"]
-            if requirement["op"] == ">=":
-                return value >= requirement["value"]
-            return value is requirement["value"]
-
-
-        def choose_engine(reports, requirements):
-            best = None
-            for name, report in reports.items():
-                if all(meets(report, r) for r in requirements):
-                    if best is None or report["cost"] < reports[best]["cost"]:
-                        best = name
-            return best
-    """,
-)
+).program("choose_engine", '_OPERATORS = {"<=": operator.le, ">=": operator.ge, "==": operator.is_}')
 mistakes(
     "COST_CAPPED",
     "Engines that cost very much are passed over.",
     "Start with the first engine that fits, or with math.inf.",
-).program(
-    "choose_engine",
-    """
-        def meets(report, requirement):
-            value = report.get(requirement["key"])
-            if value is None:
-                return False
-            if requirement["op"] == "<=":
-                return value <= requirement["value"]
-            if requirement["op"] == ">=":
-                return value >= requirement["value"]
-            return value == requirement["value"]
-
-
-        def choose_engine(reports, requirements):
-            best, lowest = None, 1000
-            for name, report in reports.items():
-                if report["cost"] < lowest and all(meets(report, r) for r in requirements):
-                    best, lowest = name, report["cost"]
-            return best
-    """,
-)
+).edit("choose_engine", {"if fits(report)": 'if report["cost"] < 1000 and fits(report)'})
 mistakes(
     "EQUALITY_ROUGH",
     "Your code accepts values that are merely close to the required one.",
     "Requirements are exact: compare with the operator itself, without a tolerance.",
-).body(
+).program(
     "choose_engine",
     """
-        def meets(value, r):
-            if r["op"] == "==" and isinstance(value, float) and isinstance(r["value"], float):
-                return math.isclose(value, r["value"])
-            return value is not None and _OPERATORS[r["op"]](value, r["value"])
+        def nearly(a, b):
+            return math.isclose(a, b) if isinstance(a, float) and isinstance(b, float) else a == b
 
-        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
-        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
+
+        _OPERATORS = {"<=": operator.le, ">=": operator.ge, "==": nearly}
     """,
-).body(
+).program(
     "choose_engine",
-    """
-        def meets(value, r):
-            if value is None or r["op"] != "==":
-                return value is not None and _OPERATORS[r["op"]](value, r["value"])
-            return abs(value - r["value"]) < 0.005
-
-        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
-        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
-    """,
-).body(
+    '_OPERATORS = {"<=": operator.le, ">=": operator.ge, "==": lambda a, b: abs(a - b) < 0.005}',
+).edit(
     "choose_engine",
-    """
-        def meets(value, r):
-            return value is not None and (
-                _OPERATORS[r["op"]](value, r["value"]) or math.isclose(value, r["value"])
-            )
-
-        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
-        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
-    """,
+    {
+        "_OPERATORS[r": "(_OPERATORS[r",
+        'r["value"])': 'r["value"]) or math.isclose(report[r["key"]], r["value"]))',
+    },
 )
 mistakes(
     "EQUALITY_BY_TYPE",
     "Equal values do not count as equal where one is an int or a bool and the other a float.",
     "Compare with == alone: True == 1 and 2 == 2.0.",
-).body(
+).program(
     "choose_engine",
-    """
-        def meets(value, r):
-            alike = r["op"] != "==" or type(value) is type(r["value"])
-            return value is not None and alike and _OPERATORS[r["op"]](value, r["value"])
-
-        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
-        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
-    """,
+    '_OPERATORS = {"<=": operator.le, ">=": operator.ge, "==": lambda a, b: type(a) is type(b) and a == b}',
 )
 mistakes(
     "COST_OF_NOTHING",

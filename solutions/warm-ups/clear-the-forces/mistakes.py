@@ -13,31 +13,12 @@ mistakes(
     "CLEARED_BEFORE_USE",
     "The speed is zero: in each step the sum is cleared before it is used, or the speed is cleared, too.",
     "In each step add the force, update the speed, then clear the sum and nothing else.",
-).body(
-    "final_speed",
-    """
-        speed = 0.0
-        for _ in range(n):
-            summed = force
-            summed = 0.0
-            speed += h * summed / mass
-        return speed
-    """,
-)
+).edit("final_speed", {"summed = 0.0\n        summed += force": "summed = force\n        summed = 0.0"})
 mistakes(
     "SPEED_CLEARED",
     "The speed is that of a single step: the others are lost.",
     "Clear only the forces. The speed is part of the body's state and stays.",
-).body(
-    "final_speed",
-    """
-        speed = 0.0
-        for _ in range(n):
-            speed = 0.0
-            speed += h * force / mass
-        return speed
-    """,
-)
+).edit("final_speed", {"summed = 0.0": "speed = summed = 0.0"})
 mistakes(
     "RESET_TO_THE_FORCE",
     "After each step the sum is set to the force. The next step adds the force once more, and pushes with twice the force.",

@@ -25,30 +25,12 @@ mistakes(
     "END_LOST",
     "The start is there, but the state after the last step is not.",
     "Begin the list with the start, and append after each step as before: n + 1 pairs.",
-).body(
-    "run",
-    """
-        states = []
-        for _ in range(n):
-            states.append((x, v))
-            v += H * a
-            x += H * v
-        return states
-    """,
-)
+).around("run", "return _right(x, v, a, n)[:-1]")
 mistakes(
     "END_OF_THE_RUN",
     "Your result is the time of the last sample, wherever the ball is by then.",
     "Look at the height: find the first sample that is 0 or less.",
-).body(
-    "landing_time",
-    """
-        for k, _ in enumerate(heights):
-            if k == len(heights) - 1:
-                return k * H
-        return None
-    """,
-)
+).body("landing_time", "return (len(heights) - 1) * H if len(heights) else None")
 mistakes(
     "GROUND_NOT_INCLUDED",
     "A ball exactly on the ground is not counted as landed.",
@@ -68,14 +50,7 @@ mistakes(
     "SEMI_IMPLICIT_TWICE",
     "This is semi-implicit Euler, like the function below it: the position moves with the new velocity.",
     "Move the position first, while the velocity is still the old one.",
-).body(
-    "euler_step",
-    """
-        v = v + h * a
-        x = x + h * v
-        return x, v
-    """,
-)
+).body("euler_step", "return semi_implicit_step(x, v, a, h)")
 mistakes(
     "STEP_MISSING",
     "The old velocity moves the position, but one of the rates is not multiplied by the step.",
@@ -141,14 +116,7 @@ mistakes(
     "Your result is the time of the last sample at or below the ground.",
     "The first one counts: return as soon as you have found it.",
 ).body(
-    "landing_time",
-    """
-        landed = None
-        for k, height in enumerate(heights):
-            if height <= 0.0:
-                landed = k * H
-        return landed
-    """,
+    "landing_time", "return max((k * H for k, height in enumerate(heights) if height <= 0.0), default=None)"
 )
 mistakes(
     "STUCK_TOGETHER",
@@ -171,15 +139,11 @@ mistakes(
     "START_TWICE",
     "The start is in the list twice, and the state after the last step is not.",
     "Put the start into the list before the loop, and append after each step.",
-).body(
+).around(
     "run",
     """
-        states = [(x, v)]
-        for _ in range(n):
-            states.append((x, v))
-            v += H * a
-            x += H * v
-        return states
+        states = _right(x, v, a, n)
+        return states[:1] + states[:-1]
     """,
 )
 mistakes(
@@ -191,16 +155,7 @@ mistakes(
     "NEAREST_TO_THE_GROUND",
     "Your result is the time of the sample nearest to the ground, also where that is above it.",
     "Return as soon as a height is 0 or less.",
-).body(
-    "landing_time",
-    """
-        nearest = min(abs(height) for height in heights)
-        for k, height in enumerate(heights):
-            if abs(height) == nearest:
-                return k * H
-        return None
-    """,
-)
+).body("landing_time", "return min(range(len(heights)), key=lambda k: abs(heights[k])) * H")
 mistakes(
     "SIZES_OF_THE_POSITIONS",
     "You subtract the sizes of the two positions, so balls on either side of the origin come out too close.",
@@ -212,12 +167,7 @@ mistakes(
     "The first one at or below it counts, which is the next.",
 ).body(
     "landing_time",
-    """
-        for k in range(len(heights) - 1):
-            if heights[k] > 0.0 >= heights[k + 1]:
-                return k * H
-        return None
-    """,
+    "return next((k * H for k in range(len(heights) - 1) if heights[k] > 0.0 >= heights[k + 1]), None)",
 )
 
 mistakes.accept(

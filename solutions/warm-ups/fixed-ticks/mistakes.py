@@ -10,13 +10,7 @@ mistakes(
     "REST_FORGOTTEN",
     "The time left over from the frame before does not count.",
     "Start from frame + left.",
-).body(
-    "ticks",
-    """
-        steps = int(frame // h)
-        return steps, frame - steps * h
-    """,
-)
+).around("ticks", "return _right(frame, h, 0.0)")
 mistakes(
     "REST_THROWN_AWAY",
     "The account is left empty, so the simulation's clock falls behind.",

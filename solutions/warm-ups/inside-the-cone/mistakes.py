@@ -37,13 +37,7 @@ mistakes(
     "NORMAL_FORGOTTEN",
     "The limit is mu alone.",
     "Pressing harder allows more friction: the limit is mu times normal.",
-).body(
-    "friction",
-    """
-        size = math.hypot(*wanted)
-        return list(wanted) if size <= mu else [part * mu / size for part in wanted]
-    """,
-)
+).edit("friction", {"mu * normal": "mu"})
 mistakes(
     "SIZES_ADDED",
     "You added the sizes of the components instead of taking the length of the vector.",

@@ -8,32 +8,17 @@ mistakes(
     "NO_LATENCY",
     "Values are read at the moment they are taken.",
     "Each arrives its latency later.",
-).edit(
-    "seen",
-    {
-        "value for time, value in zip(times, values) if time + latency": "v for t, v in zip(times, values) if t"
-    },
-)
+).edit("seen", {" + latency": ""})
 mistakes(
     "FROM_THE_FUTURE",
     "The function sees values that have not been taken yet: the latency has the wrong sign.",
     "A value that arrives now was taken at now minus latency.",
-).edit(
-    "seen",
-    {
-        "value for time, value in zip(times, values) if time + latency <= now": "v for t, v in zip(times, values) if t <= now + latency"
-    },
-)
+).edit("seen", {"time + latency <= now": "time <= now + latency"})
 mistakes(
     "ARRIVAL_NOT_COUNTED",
     "A value that arrives exactly now is not counted.",
     "Count it: compare with <=, or look its place up with bisect_right.",
-).edit(
-    "seen",
-    {
-        "value for time, value in zip(times, values) if time + latency <=": "v for t, v in zip(times, values) if t + latency <"
-    },
-)
+).edit("seen", {"<= now": "< now"})
 mistakes(
     "NEAREST_NOT_NEWEST",
     "You take the value whose arrival is nearest, even if it has not arrived yet.",
@@ -69,30 +54,12 @@ mistakes(
     "ZERO_IS_NONE",
     "You give None where the newest value is 0.",
     "Python takes 0 for false in `or` and in `if value`. Ask whether anything has arrived, not what.",
-).body(
-    "seen",
-    """
-        newest = None
-        for time, value in zip(times, values):
-            if time + latency <= now:
-                newest = value
-        return newest or None
-    """,
-)
+).edit("seen", {"arrived[-1] if arrived": "(arrived[-1] or None) if arrived"})
 mistakes(
     "FIRST_IS_NONE",
     "You give None where only the first value has arrived.",
     "Its index is 0, which Python takes for false. Ask whether one has arrived, not whether its index is above 0.",
-).body(
-    "seen",
-    """
-        found = None
-        for k, time in enumerate(times):
-            if time + latency <= now:
-                found = k
-        return values[found] if found else None
-    """,
-)
+).edit("seen", {"if arrived else": "if len(arrived) > 1 else"})
 mistakes(
     "LARGEST_NOT_NEWEST",
     "You take the largest value that has arrived.",
@@ -102,15 +69,7 @@ mistakes(
     "ALL_ARRIVED_IS_NONE",
     "You give None where all values have arrived.",
     "Where no value is still on its way, give the last one.",
-).body(
-    "seen",
-    """
-        for k, time in enumerate(times):
-            if time + latency > now:
-                return values[k - 1] if k else None
-        return None
-    """,
-)
+).edit("seen", {"if arrived else": "if 0 < len(arrived) < len(times) else"})
 mistakes(
     "ONE_TOO_EARLY",
     "You give the value before the newest one that has arrived.",
@@ -120,15 +79,7 @@ mistakes(
     "ONE_TOO_LATE",
     "You give the first value that has not arrived yet.",
     "Give the one before it.",
-).body(
-    "seen",
-    """
-        for time, value in zip(times, values):
-            if time + latency > now:
-                return value
-        return None
-    """,
-)
+).body("seen", "return next((value for time, value in zip(times, values) if time + latency > now), None)")
 mistakes(
     "TIME_NOT_VALUE",
     "Your result is the time of the sample, not its value.",

@@ -25,22 +25,12 @@ mistakes(
     "MEASURED_FIRST",
     "You took measured - simulated.",
     "A model that gives too much has a positive error: simulated - measured.",
-).edit(
-    "model_error",
-    {
-        "simulated - measured - reach, simulated - measured": "measured - simulated - reach, measured - simulated"
-    },
-)
+).around("model_error", "return _right(measured, simulated, u_num, u_input, u_data)")
 mistakes(
     "NO_SIGN",
     "You took the size of the difference.",
     "Leave out the abs: the interval says in which direction the model errs.",
-).edit(
-    "model_error",
-    {
-        "simulated - measured - reach, simulated - measured": "abs(simulated - measured) - reach, abs(simulated - measured)"
-    },
-)
+).around("model_error", "return _right(abs(simulated - measured), 0.0, u_num, u_input, u_data)")
 mistakes(
     "UPPER_FIRST",
     "The upper end comes first.",
@@ -83,68 +73,34 @@ mistakes(
     "DIFFERENCE_AND_U",
     "You gave the difference and its uncertainty.",
     "Give two ends: the difference less twice the uncertainty, and plus twice that.",
-).body(
-    "model_error",
-    """
-        u = math.hypot(u_num, u_input, u_data)
-        return simulated - measured, u
-    """,
-)
+).edit("model_error", {"= 2 *": "=", " - reach, simulated - measured + reach": ", reach"})
 mistakes(
     "DIFFERENCE_AND_REACH",
     "You gave the difference and how far the interval reaches.",
     "Give its two ends: the difference less that, and plus that.",
-).body(
-    "model_error",
-    """
-        u = math.hypot(u_num, u_input, u_data)
-        return simulated - measured, 2 * u
-    """,
-)
+).edit("model_error", {" - reach, simulated - measured + reach": ", reach"})
 mistakes(
     "HALF_NOT_ROOT",
     "You halved the sum of squares instead of taking its root.",
     "**1/2 is (**1)/2. Write **0.5, or math.sqrt.",
-).body(
-    "model_error",
-    """
-        u = (u_num**2 + u_input**2 + u_data**2) ** 1 / 2
-        return simulated - measured - 2 * u, simulated - measured + 2 * u
-    """,
+).edit(
+    "model_error", {"math.hypot(u_num, u_input, u_data)": "((u_num**2 + u_input**2 + u_data**2) ** 1 / 2)"}
 )
 mistakes(
     "LARGEST_ONLY",
     "You took the largest of the three uncertainties.",
     "All three count: add their squares and take the root.",
-).body(
-    "model_error",
-    """
-        u = max(u_num, u_input, u_data)
-        return simulated - measured - 2 * u, simulated - measured + 2 * u
-    """,
-)
+).edit("model_error", {"math.hypot(": "max("})
 mistakes(
     "AROUND_THE_MEASURED",
     "Your interval lies around the measured value.",
     "The interval is one of the error, so it lies around simulated - measured.",
-).body(
-    "model_error",
-    """
-        u = math.hypot(u_num, u_input, u_data)
-        return measured - 2 * u, measured + 2 * u
-    """,
-)
+).edit("model_error", {"simulated - measured - reach, simulated - measured": "measured - reach, measured"})
 mistakes(
     "ONE_POINT_NINE_SIX",
     "You reach 1.96 uncertainties to either side.",
     "The README asks for twice the uncertainty.",
-).body(
-    "model_error",
-    """
-        u = math.hypot(u_num, u_input, u_data)
-        return simulated - measured - 1.96 * u, simulated - measured + 1.96 * u
-    """,
-)
+).edit("model_error", {"= 2 *": "= 1.96 *"})
 mistakes(
     "NOT_SQUARED",
     "You took the root of the sum, but the uncertainties are not squared.",

@@ -33,13 +33,7 @@ mistakes(
     "DIAGONAL_ONLY",
     "You left out the entries of M beside its diagonal.",
     "m12 and m21 couple the carriage and the rod.",
-).body(
-    "felt_mass",
-    """
-        lever = -length * np.sin(angle)
-        return 1.0 / (1.0 / (carriage + tip) + lever**2 / (tip * length**2))
-    """,
-)
+).edit("felt_mass", {"tip * lever], [tip * lever,": "0.0], [0.0,"})
 mistakes(
     "COUPLING_SIGN",
     "A sign beside the diagonal is wrong, in M or in its inverse, or that of J's second entry.",
@@ -59,14 +53,7 @@ mistakes(
     "FIRST_ENTRY_ONLY",
     "You gave one over the first entry of M⁻¹, as if only the carriage moved the tip.",
     "J has two entries, and both count: J @ M⁻¹ @ J.",
-).body(
-    "felt_mass",
-    """
-        lever = -length * np.sin(angle)
-        mass = np.array([[carriage + tip, tip * lever], [tip * lever, tip * length**2]])
-        return 1.0 / np.linalg.inv(mass)[0, 0]
-    """,
-)
+).edit("felt_mass", {"(row @ np.linalg.solve(mass, row))": "np.linalg.inv(mass)[0, 0]"})
 mistakes(
     "LENGTH_NOT_SQUARED",
     "In m22 the length is not squared.",

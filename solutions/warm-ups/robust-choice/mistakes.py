@@ -8,24 +8,12 @@ mistakes(
     "BEST_ON_AVERAGE",
     "You take the controller that is best on average, however badly it does in one world.",
     "Compare the worst costs.",
-).body(
-    "robust",
-    """
-        means = [sum(row) / len(row) for row in costs]
-        return means.index(min(means))
-    """,
-)
+).edit("robust", {"max(row)": "sum(row) / len(row)"})
 mistakes(
     "BEST_CASE",
     "You take the controller with the smallest cost in any one world.",
     "You cannot count on that world: compare the worst costs.",
-).body(
-    "robust",
-    """
-        best = [min(row) for row in costs]
-        return best.index(min(best))
-    """,
-)
+).edit("robust", {"max(row)": "min(row)"})
 mistakes(
     "LARGEST_WORST",
     "You take the controller whose worst cost is the largest.",
@@ -60,13 +48,7 @@ mistakes(
     "COSTS_AS_REWARDS",
     "You take the controller whose smallest cost is the largest. That would be careful if the numbers were rewards.",
     "A small cost is good: the worst of a controller is its largest cost, and the smallest of these counts.",
-).body(
-    "robust",
-    """
-        best = [min(row) for row in costs]
-        return best.index(max(best))
-    """,
-)
+).edit("robust", {"max(row)": "min(row)", "index(min": "index(max"})
 mistakes(
     "LAST_WORLD",
     "You compare the costs in one world.",
@@ -76,13 +58,7 @@ mistakes(
     "COUNTED_THROUGH_ALL",
     "You look for the smallest of all costs, and count through every cost of every controller.",
     "Take the largest cost of each controller first. Then look for the smallest of these.",
-).body(
-    "robust",
-    """
-        every = [cost for row in costs for cost in row]
-        return every.index(min(every))
-    """,
-)
+).edit("robust", {"max(row) for row in costs": "cost for row in costs for cost in row"})
 mistakes(
     "SIZES_OF_COSTS",
     "You compare the sizes of the costs, without their signs.",

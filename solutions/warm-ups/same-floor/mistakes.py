@@ -13,26 +13,12 @@ mistakes(
     "CFM_KEPT",
     "The CFM is the old one.",
     "The CFM is one over h k + c: it contains the step, too.",
-).body(
-    "same_floor",
-    """
-        spring = erp / (cfm * h)
-        damper = (1 - erp) / cfm
-        return new_h * spring / (new_h * spring + damper), cfm
-    """,
-)
+).edit("same_floor", {"1 / whole": "cfm"})
 mistakes(
     "ERP_SCALED",
     "The ERP is scaled like the step. But the step stands above and below the line of its fraction.",
     "Compute the spring and the damper, and from them the ERP at the new step.",
-).body(
-    "same_floor",
-    """
-        spring = erp / (cfm * h)
-        damper = (1 - erp) / cfm
-        return erp * new_h / h, 1 / (new_h * spring + damper)
-    """,
-)
+).edit("same_floor", {"new_h * spring / whole": "erp * new_h / h"})
 mistakes(
     "DAMPER_TAKEN_WHOLE",
     "The damper was taken to be one over the CFM, which is h k + c.",
@@ -62,15 +48,7 @@ mistakes(
     "STEPS_EXCHANGED",
     "The two steps are exchanged.",
     "The old numbers belong to h, and the new ones to new_h.",
-).body(
-    "same_floor",
-    """
-        spring = erp / (cfm * new_h)
-        damper = (1 - erp) / cfm
-        whole = h * spring + damper
-        return h * spring / whole, 1 / whole
-    """,
-)
+).around("same_floor", "return _right(erp, cfm, new_h, h)")
 mistakes(
     "CFM_NOT_INVERTED",
     "Your second number is h k + c itself.",

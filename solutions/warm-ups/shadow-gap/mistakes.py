@@ -8,15 +8,7 @@ mistakes(
     "NOT_NORMALISED",
     "Your gap grows with the length of the direction.",
     "Divide the direction by its length first.",
-).body(
-    "shadow_gap",
-    """
-        dx, dy = direction
-        on_a = [x * dx + y * dy for x, y in a]
-        on_b = [x * dx + y * dy for x, y in b]
-        return max(min(on_b) - max(on_a), min(on_a) - max(on_b))
-    """,
-)
+).edit("shadow_gap", {"math.hypot(dx, dy)": "1.0"})
 mistakes(
     "ONE_ORDER_ONLY",
     "You assumed that b is ahead of a.",
@@ -36,12 +28,7 @@ mistakes(
     "NO_SIGN",
     "An overlap comes out positive.",
     "It has to be negative, or nobody can tell it from a gap.",
-).edit(
-    "shadow_gap",
-    {
-        "max(min(on_b) - max(on_a), min(on_a) - max(on_b": "abs(max(min(on_b) - max(on_a), min(on_a) - max(on_b)"
-    },
-)
+).around("shadow_gap", "return abs(_right(a, b, direction))")
 mistakes(
     "OF_THE_CENTRES",
     "You gave the distance of the shapes' middles.",
@@ -54,15 +41,12 @@ mistakes(
     "ACROSS",
     "You measured across the direction, not along it.",
     "The shadow of (x, y) is x times the direction's x plus y times its y, over its length.",
-).body(
+).edit(
     "shadow_gap",
-    """
-        dx, dy = direction
-        size = math.hypot(dx, dy)
-        on_a = [(x * dy - y * dx) / size for x, y in a]
-        on_b = [(x * dy - y * dx) / size for x, y in b]
-        return max(min(on_b) - max(on_a), min(on_a) - max(on_b))
-    """,
+    {
+        "x * dx + y * dy) / size for x, y in a": "x * dy - y * dx) / size for x, y in a",
+        "x * dx + y * dy) / size for x, y in b": "x * dy - y * dx) / size for x, y in b",
+    },
 )
 mistakes(
     "DIVIDED_BY_THE_SQUARE",
@@ -109,18 +93,7 @@ mistakes(
     "OVERLAP_ONE_WAY",
     "Where the shadows overlap you measured one way only.",
     "There both ways out count, and the shorter one decides: take the larger of the two gaps.",
-).body(
-    "shadow_gap",
-    """
-        dx, dy = direction
-        size = math.hypot(dx, dy)
-        on_a = [(x * dx + y * dy) / size for x, y in a]
-        on_b = [(x * dx + y * dy) / size for x, y in b]
-        if max(on_a) < min(on_b):
-            return min(on_b) - max(on_a)
-        return min(on_a) - max(on_b)
-    """,
-)
+).edit("shadow_gap", {"max(min(on_b) - max(on_a),": "min(on_b) - max(on_a) if max(on_a) < min(on_b) else ("})
 mistakes(
     "BETWEEN_THE_CENTRES",
     "You gave the way from middle to middle.",
@@ -158,15 +131,8 @@ mistakes(
     "FIRST_AND_LAST_CORNER",
     "You took the first and the last corner for the ends of a shadow.",
     "The ends are its smallest and its largest corner, wherever in the list they are.",
-).body(
-    "shadow_gap",
-    """
-        dx, dy = direction
-        size = math.hypot(dx, dy)
-        on_a = [(x * dx + y * dy) / size for x, y in a]
-        on_b = [(x * dx + y * dy) / size for x, y in b]
-        return max(on_b[0] - on_a[-1], on_a[0] - on_b[-1])
-    """,
+).edit(
+    "shadow_gap", {"min(on_b) - max(on_a), min(on_a) - max(on_b)": "on_b[0] - on_a[-1], on_a[0] - on_b[-1]"}
 )
 mistakes(
     "WHOLE_SHADOW",

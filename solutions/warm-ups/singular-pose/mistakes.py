@@ -10,14 +10,7 @@ mistakes(
     "CARRIAGE_ALONE",
     "Your carriage moves at vx, as if the turning rod moved the tip only up and down.",
     "Differentiate x = s + length cos(angle): the rod has a share in it.",
-).body(
-    "joint_speeds",
-    """
-        if abs(math.cos(angle)) < 1e-9:
-            return None
-        return vx, vy / (length * math.cos(angle))
-    """,
-)
+).edit("joint_speeds", {" + length * math.sin(angle) * turn": ""})
 mistakes(
     "SIGN_OF_THE_ROD",
     "The rod's share in x has the wrong sign.",
@@ -52,14 +45,7 @@ mistakes(
     "DEGREES",
     "You took the angle as degrees.",
     "It is in radians already.",
-).body(
-    "joint_speeds",
-    """
-        angle = math.radians(angle)
-        turn = vy / (length * math.cos(angle))
-        return vx + length * math.sin(angle) * turn, turn
-    """,
-)
+).around("joint_speeds", "return _right(math.radians(angle), length, vx, vy)")
 mistakes(
     "TRANSPOSED",
     "You multiplied the velocity with a matrix instead of solving for the speeds.",
@@ -118,14 +104,13 @@ mistakes(
     "SINE_AND_COSINE_SWAPPED",
     "Sine and cosine are swapped, also where you look for the singular pose.",
     "Differentiate x and y: a cosine becomes minus a sine, a sine becomes a cosine.",
-).body(
+).edit(
     "joint_speeds",
-    """
-        if abs(math.sin(angle)) < 1e-9:
-            return None
-        turn = vy / (length * math.sin(angle))
-        return vx - length * math.cos(angle) * turn, turn
-    """,
+    {
+        "abs(math.cos": "abs(math.sin",
+        "(length * math.cos": "(length * math.sin",
+        "vx + length * math.sin": "vx - length * math.cos",
+    },
 )
 mistakes(
     "COSINE_FORGOTTEN",

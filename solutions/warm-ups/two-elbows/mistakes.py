@@ -10,14 +10,7 @@ mistakes(
     "ROD_ALONG_THE_RAIL",
     "Your places are one rod length to either side, as if the rod lay on the rail.",
     "The rod is the long side of a right triangle. Find the side along the rail.",
-).body(
-    "carriages",
-    """
-        if abs(y) > length:
-            return None
-        return x - length, x + length
-    """,
-)
+).edit("carriages", {"math.sqrt(length**2 - y**2)": "length"})
 mistakes(
     "SQUARES_ADDED",
     "You added the squares of the rod and of the height.",
@@ -62,37 +55,26 @@ mistakes(
     "ALWAYS_A_PLACE",
     "You find a place for points that are out of reach.",
     "If the point is farther from the rail than the rod is long, give None.",
-).body(
+).edit(
     "carriages",
-    """
-        aside = math.sqrt(abs(length**2 - y**2))
-        return x - aside, x + aside
-    """,
+    {"    if abs(y) > length:\n        return None\n": "", "(length**2 - y**2)": "(abs(length**2 - y**2))"},
 )
 mistakes(
     "AS_NEAR_AS_POSSIBLE",
     "For points out of reach you put the carriage right below or above.",
     "There the rod does not reach: give None.",
-).body(
+).edit(
     "carriages",
-    """
-        aside = math.sqrt(max(length**2 - y**2, 0.0))
-        return x - aside, x + aside
-    """,
+    {
+        "    if abs(y) > length:\n        return None\n": "",
+        "(length**2 - y**2)": "(max(length**2 - y**2, 0.0))",
+    },
 )
 mistakes(
     "WRONG_AXIS",
     "You took x for the distance from the rail.",
     "The rail is the line y = 0, so the distance from it is |y|.",
-).body(
-    "carriages",
-    """
-        if abs(x) > length:
-            return None
-        aside = math.sqrt(length**2 - x**2)
-        return y - aside, y + aside
-    """,
-)
+).around("carriages", "return _right(y, x, length)")
 mistakes(
     "FROM_THE_ORIGIN",
     "You give None where the point is far from the origin.",
@@ -102,14 +84,7 @@ mistakes(
     "HEIGHT_TO_EITHER_SIDE",
     "Your places are as far to either side as the point is high.",
     "If you take the angle of the rod, its height goes with the sine and its share along the rail with the cosine.",
-).body(
-    "carriages",
-    """
-        if abs(y) > length:
-            return None
-        return x - y, x + y
-    """,
-)
+).edit("carriages", {"math.sqrt(length**2 - y**2)": "y"})
 mistakes(
     "NAN_FOR_NONE",
     "For points out of reach you give nan.",
@@ -124,15 +99,7 @@ mistakes(
     "GIVEN_ONCE",
     "Where the rod stands upright you give one place.",
     "Both places are the same there: give it twice.",
-).body(
-    "carriages",
-    """
-        if abs(y) > length:
-            return None
-        aside = math.sqrt(length**2 - y**2)
-        return tuple(sorted({x - aside, x + aside}))
-    """,
-)
+).edit("carriages", {"x - aside, x + aside": "tuple(sorted({x - aside, x + aside}))"})
 mistakes(
     "BELOW_ONLY",
     "You find no place for points above the rail.",

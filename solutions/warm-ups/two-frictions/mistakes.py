@@ -59,16 +59,7 @@ mistakes(
     "MEAN_AND_PRODUCT_SWAPPED",
     'For "mean" you multiply, and for "product" you take the mean.',
     "Exchange the two lines.",
-).body(
-    "pair_friction",
-    """
-        if rule == "mean":
-            return mu1 * mu2
-        if rule == "product":
-            return (mu1 + mu2) / 2
-        return max(mu1, mu2)
-    """,
-)
+).edit("pair_friction", {"mu1 * mu2": "(mu1 + mu2) / 2", "(mu1 + mu2) / 2.0": "mu1 * mu2"})
 mistakes(
     "FIRST_FOR_LARGER",
     'For "larger" you give mu1, even where mu2 is larger.',

@@ -10,14 +10,7 @@ mistakes(
     "ALWAYS_ALONG_Y",
     "Your box always moves along y.",
     "Sometimes the way along x is shorter.",
-).body(
-    "way_out",
-    """
-        if abs(x) >= width or abs(y) >= height:
-            return 0.0, 0.0
-        return 0.0, math.copysign(height - abs(y), y)
-    """,
-)
+).edit("way_out", {"    if along < across:\n        return math.copysign(along, x), 0.0\n": ""})
 mistakes(
     "LONGER_WAY",
     "You took the longer way out.",
@@ -27,45 +20,17 @@ mistakes(
     "INTO_EACH_OTHER",
     "You move the second box towards the first.",
     "It has to move to the side where it is already.",
-).body(
-    "way_out",
-    """
-        along, across = width - abs(x), height - abs(y)
-        if along <= 0 or across <= 0:
-            return 0.0, 0.0
-        if along < across:
-            return -math.copysign(along, x), 0.0
-        return 0.0, -math.copysign(across, y)
-    """,
-)
+).edit("way_out", {"return math": "return -math", "0.0, math": "0.0, -math"})
 mistakes(
     "ALWAYS_FORWARDS",
     "Your box always moves to the right or up.",
     "If the second box is to the left or below, it moves that way.",
-).body(
-    "way_out",
-    """
-        along, across = width - abs(x), height - abs(y)
-        if along <= 0 or across <= 0:
-            return 0.0, 0.0
-        if along < across:
-            return along, 0.0
-        return 0.0, across
-    """,
-)
+).edit("way_out", {"math.copysign(along, x)": "along", "math.copysign(across, y)": "across"})
 mistakes(
     "BOTH_WAYS",
     "You move along x and along y.",
     "One of the two is enough: the shorter.",
-).body(
-    "way_out",
-    """
-        along, across = width - abs(x), height - abs(y)
-        if along <= 0 or across <= 0:
-            return 0.0, 0.0
-        return math.copysign(along, x), math.copysign(across, y)
-    """,
-)
+).edit("way_out", {"if along < across:\n        return": "return", ", 0.0\n    return 0.0, math": ", math"})
 mistakes(
     "HALF_SIZES",
     "Your boxes are half as large.",
@@ -75,29 +40,25 @@ mistakes(
     "NOT_ASKED",
     "You move boxes that are apart in both directions or in one.",
     "Give (0, 0) unless both depths are positive.",
-).body(
+).edit(
     "way_out",
-    """
-        along, across = width - abs(x), height - abs(y)
-        if along < across:
-            return (along if x > 0 else -along), 0.0
-        return 0.0, (across if y > 0 else -across)
-    """,
+    {
+        "    if along <= 0 or across <= 0:\n        return 0.0, 0.0\n": "",
+        "math.copysign(along, x)": "(along if x > 0 else -along)",
+        "math.copysign(across, y)": "(across if y > 0 else -across)",
+    },
 )
 mistakes(
     "EITHER_IS_ENOUGH",
     "You move boxes that overlap along one axis only.",
     "A single direction in which they are apart is enough: give (0, 0) unless both depths are positive.",
-).body(
+).edit(
     "way_out",
-    """
-        along, across = width - abs(x), height - abs(y)
-        if along <= 0 and across <= 0:
-            return 0.0, 0.0
-        if along < across:
-            return (along if x > 0 else -along), 0.0
-        return 0.0, (across if y > 0 else -across)
-    """,
+    {
+        "<= 0 or": "<= 0 and",
+        "math.copysign(along, x)": "(along if x > 0 else -along)",
+        "math.copysign(across, y)": "(across if y > 0 else -across)",
+    },
 )
 mistakes(
     "MIDDLES_COMPARED",
@@ -108,32 +69,18 @@ mistakes(
     "NEW_PLACE",
     "You gave the new place of the second box.",
     "Give the move: the new place less the old one.",
-).body(
+).edit(
     "way_out",
-    """
-        along, across = width - abs(x), height - abs(y)
-        if along <= 0 or across <= 0:
-            return 0.0, 0.0
-        if along < across:
-            return x + math.copysign(along, x), y
-        return x, y + math.copysign(across, y)
-    """,
+    {
+        "return math.copysign(along, x), 0.0": "return x + math.copysign(along, x), y",
+        "return 0.0, math": "return x, y + math",
+    },
 )
 mistakes(
     "MOVED_BY_THE_DISTANCE",
     "You move the box by the distance of the middles.",
     "It has to move by the depth: the width less |x|, or the height less |y|.",
-).body(
-    "way_out",
-    """
-        along, across = width - abs(x), height - abs(y)
-        if along <= 0 or across <= 0:
-            return 0.0, 0.0
-        if along < across:
-            return x, 0.0
-        return 0.0, y
-    """,
-)
+).edit("way_out", {"math.copysign(along, x)": "x", "math.copysign(across, y)": "y"})
 mistakes(
     "NO_SIZE_OF_X",
     "Your depths are wrong where x or y is negative.",
@@ -168,16 +115,12 @@ mistakes(
     "AXES_SWAPPED",
     "dx and dy are swapped.",
     "The move along x comes first.",
-).body(
+).edit(
     "way_out",
-    """
-        along, across = width - abs(x), height - abs(y)
-        if along <= 0 or across <= 0:
-            return 0.0, 0.0
-        if along < across:
-            return 0.0, math.copysign(along, x)
-        return math.copysign(across, y), 0.0
-    """,
+    {
+        "math.copysign(along, x), 0.0": "0.0, math.copysign(along, x)",
+        "0.0, math.copysign(across, y)": "math.copysign(across, y), 0.0",
+    },
 )
 mistakes(
     "CHOSEN_BY_SIZE",

@@ -22,13 +22,7 @@ mistakes(
     "DEGREES",
     "You took the angles as degrees.",
     "They are in radians already.",
-).body(
-    "hand",
-    """
-        a, b = math.radians(a1), math.radians(a1 + a2)
-        return l1 * math.cos(a) + l2 * math.cos(b), l1 * math.sin(a) + l2 * math.sin(b)
-    """,
-)
+).around("hand", "return _right(math.radians(a1), math.radians(a2), l1, l2)")
 mistakes(
     "ELBOW_TURNS_BACK",
     "The elbow turns clockwise.",

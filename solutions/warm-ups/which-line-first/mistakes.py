@@ -8,15 +8,7 @@ mistakes(
     "BOTH_OLD",
     "Both lines use the values from before the step, and every step adds energy.",
     "Let one of the two lines use the value that the other has just computed.",
-).body(
-    "swing",
-    """
-        for _ in range(n):
-            a = -k / m * x
-            x, v = x + h * v, v + h * a
-        return x, v
-    """,
-)
+).edit("swing", {"v += h * (-k / m * x)\n        x += h * v": "x, v = x + h * v, v + h * (-k / m * x)"})
 mistakes(
     "BOTH_NEW",
     "Both lines use the values from after the step, and every step takes energy away.",
@@ -55,29 +47,17 @@ mistakes(
     "MEAN_VELOCITY",
     "The position moves with the mean of the old and the new velocity, and the swing still grows.",
     "Move it with the new velocity alone.",
-).body(
-    "swing",
-    """
-        for _ in range(n):
-            before = v
-            v += h * (-k / m * x)
-            x += h * (before + v) / 2
-        return x, v
-    """,
-)
+).edit("swing", {"v += h": "before = v\n        v += h", "x += h * v": "x += h * (before + v) / 2"})
 mistakes(
     "MEAN_POSITION",
     "The force is taken at the mean of the old and the new position, and the swing still grows.",
     "Take it at the new position alone.",
-).body(
+).edit(
     "swing",
-    """
-        for _ in range(n):
-            before = x
-            x += h * v
-            v += h * (-k / m * (before + x) / 2)
-        return x, v
-    """,
+    {
+        "v += h * (-k / m * x)": "before = x",
+        "x += h * v": "x += h * v\n        v += h * (-k / m * (before + x) / 2)",
+    },
 )
 mistakes(
     "SECOND_ORDER",

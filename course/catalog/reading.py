@@ -4,8 +4,6 @@ Every file of the course is UTF-8 and declares a ``format_version``. The type th
 the rest; msgspec's errors are put into plain words here.
 """
 
-from __future__ import annotations
-
 import contextlib
 import re
 import tomllib

@@ -6,8 +6,6 @@ and the physics engine combines those of a pair. ``gazebo_start.py``, which must
 sets the velocities at the start.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Sequence

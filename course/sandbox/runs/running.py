@@ -1,7 +1,5 @@
 """A run without a view: all events, and the answer to the scene's question."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

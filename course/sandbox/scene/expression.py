@@ -1,7 +1,5 @@
 """The formulas of a scene, and the texts that hold them: ``course.formulas`` with a scene's own refusals."""
 
-from __future__ import annotations
-
 import re
 import string
 from collections.abc import Iterator, Mapping

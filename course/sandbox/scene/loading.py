@@ -1,7 +1,5 @@
 """Scenes from files: the course's own by id, a student's by path, with parameters set."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator, Mapping

@@ -6,8 +6,6 @@ file out of range is refused with its line; what a type cannot say is checked in
 ``course.sandbox.scene.rules``.
 """
 
-from __future__ import annotations
-
 import math
 import random
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """The rules for a scene that its types cannot express: references, complete shapes, fitting ranges."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The text of a view: events as they happen, and the result of the prediction."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable, Sequence

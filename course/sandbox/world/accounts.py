@@ -1,7 +1,5 @@
 """The accounts of a running world: where energy came from, where it went, and a minute of history."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Sequence

@@ -5,8 +5,6 @@ read ``drain_events()``, ``receipt`` and ``history``, and pass on the user's act
 ``on_input``, with the tick before which it happened: all that a replay needs.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections import deque

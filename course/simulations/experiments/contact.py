@@ -5,14 +5,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.contact.models import Constraint, ContactModel, Penalty, SoftConvex, drop, erp_cfm
 from course.physics.simulator import Simulator, step_count
 from course.physics.solver import Chain, iterations_to, stack_impulses
-from course.physics.state import RigidBodyState
+from course.physics.state import Array, RigidBodyState
 from course.printable import counted
 from course.simulations.base import (
     Column,
@@ -25,9 +24,6 @@ from course.simulations.base import (
     percent,
     step,
 )
-
-Array = NDArray[np.float64]
-
 
 # ---
 # Two balls meet head on: when, how fast do they part, and what is kept?

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from course.physics.body import Body
 from course.physics.contact import Surface
@@ -13,7 +13,7 @@ from course.physics.dynamics import DrivenArm, HandPath, PassiveArm, TwoLinkArm
 from course.physics.integrators import RK4, STEPPERS, SemiImplicitEuler, State, trajectory
 from course.physics.invariants import energy, relative_change
 from course.physics.simulator import Simulator, step_count
-from course.physics.state import RigidBodyState
+from course.physics.state import Array, RigidBodyState
 from course.physics.systems import Oscillator
 from course.printable import counted
 from course.simulations.base import (
@@ -28,9 +28,6 @@ from course.simulations.base import (
     percent,
     step,
 )
-
-Array = NDArray[np.float64]
-
 
 # ---
 # An arm of two links: plan a path (kinematics), find the torques (inverse), let them act (forward).

@@ -5,14 +5,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.integrators import STEPPERS, State, first_crossing, hermite, trajectory
 from course.physics.rotation import ROTATION_STEPPERS, Spin, angular_momentum, kinetic_energy, rotate
 from course.physics.simulator import Recording, Simulator, step_count
-from course.physics.state import RigidBodyState
+from course.physics.state import Array, RigidBodyState
 from course.physics.systems import FreeFall
 from course.simulations.base import (
     METHOD,
@@ -28,9 +27,6 @@ from course.simulations.base import (
     step,
     times,
 )
-
-Array = NDArray[np.float64]
-
 
 # ---
 # A ball is let go: when does it land, and what does each method make of the simplest motion there is?

@@ -1,7 +1,5 @@
 """The program behind the view in a terminal: what keys and the mouse do, and one frame after the other."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from time import perf_counter

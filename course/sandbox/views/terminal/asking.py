@@ -1,7 +1,5 @@
 """Boxes over the picture: the question before a run, the numbers after it, the keys, the events."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """The view in a terminal: half blocks, a mouse or keys, and the accounts beside the picture."""
 
-from __future__ import annotations
-
 import os
 import sys
 

@@ -1,7 +1,5 @@
 """The panel beside the picture: numbers, small curves and lines of text, as plain pieces."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

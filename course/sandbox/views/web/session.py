@@ -3,8 +3,6 @@
 The state lives here, so a page can be reloaded at any time. Time passes only while the page is visible.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import functools

@@ -3,8 +3,6 @@
 It needs the packages of the extra ``web``: whoever imports it has asked for them.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import hmac

@@ -132,7 +132,6 @@ def audit(
     """Check the course, or one lesson or exercise of it.
 
     Args:
-        catalog: the course; it needs its solutions and hidden graders.
         only: id of a lesson, an exercise, a question or a scene; None for everything.
         without: ids of lessons and exercises to leave out, where each is checked by itself.
         on_progress: called at the start and after each submission with the number graded and the total.

@@ -95,7 +95,6 @@ class Generated:
         kind: "lesson", "exercise", "quiz" or "sandbox".
         id: of the lesson or exercise; else the kind again.
         path: relative to the folder that notebooks go into.
-        data: the file.
     """
 
     kind: str

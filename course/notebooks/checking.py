@@ -209,11 +209,7 @@ class Run:
 
 
 class Runs:
-    """The cells that a shell runs from now on, and those that were deleted meanwhile.
-
-    Args:
-        shell: of IPython.
-    """
+    """The cells that a shell runs from now on, and those that were deleted meanwhile."""
 
     def __init__(self, shell: Any) -> None:
         self._shell = shell

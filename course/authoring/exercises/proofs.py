@@ -56,8 +56,6 @@ class Proof:
 
     Attributes:
         role: "stub", "solution", "accepted" or "mutant".
-        name: of the program.
-        mutant: what ``mistakes.py`` says of it.
         line: in its file, where that has more than this program.
     """
 

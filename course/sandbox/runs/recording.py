@@ -380,7 +380,6 @@ class Film:
     """Collects frames of one run.
 
     Args:
-        scene: the scene to film; the picture shows its view.
         width: of a frame in pixels; its height follows from the view.
     """
 

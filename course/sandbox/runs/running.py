@@ -173,16 +173,12 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
 
     Attributes:
         duration: simulated time, in s.
-        steps: made.
-        events: all of them, in order.
         dropped: events that were too many to keep.
-        receipt: at the end.
         momentum_before, momentum_after: along x and y in kg m/s, and angular in kg m²/s.
         momentum_least, momentum_most: along x and y, on the way.
         probes: what the scene's probes read.
         comparison: the prediction's, if the scene asks for one.
         samples: time in s, and the state (n, 6) then, with the names of its rows.
-        state_hash: of the end.
     """
 
     duration: float
@@ -214,7 +210,6 @@ def run(
     """Run a scene to its end.
 
     Args:
-        chosen: the scene with its settings.
         duration: in s; the scene's own if None.
         guess: the student's number, if one was asked for.
         every: keep a sample of all bodies this often, in s; 0 keeps none.

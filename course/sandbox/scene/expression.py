@@ -13,7 +13,6 @@ def evaluate(text: str, values: Mapping[str, float]) -> float:
 
     Args:
         text: the formula. ``name.field`` is looked up as one name, hyphens in it written as underscores.
-        values: the value of each name.
 
     Raises:
         UsageError: it is not a formula, names something unknown, or has no value (a division by zero, say).

@@ -31,7 +31,6 @@ class Chosen(msgspec.Struct, frozen=True, kw_only=True):
         scene: with its parameters put in.
         parameters: the scene's own, every one.
         settings: those of ``SETTINGS`` that were given.
-        path: the file.
         own: it is not one of the course's.
     """
 
@@ -338,11 +337,9 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
     Attributes:
         question, unit: as the scene asks, with the numbers of this run.
         guess: the student's; None if none was made.
-        theory: what the formula gives.
         simulation: what the run gave; "nan" if what was asked for did not happen.
         guess_right: the guess is close to theory or simulation, whichever is nearer; None without a guess.
         agree: theory and simulation are as close as the scene says they should be.
-        verdict: one sentence.
         why: the reasoning behind the formula, with the numbers of this run.
     """
 
@@ -373,8 +370,6 @@ def compare(
 
     Args:
         asked: the scene's question.
-        simulation: the number the run gave.
-        values: the values of the names in formula and texts.
         guess: the student's number.
 
     Raises:

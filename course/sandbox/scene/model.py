@@ -64,7 +64,6 @@ class Repeat(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """The same body several times in a row; two of them make a grid.
 
     Attributes:
-        count: how many in all.
         offset: from one to the next, in m.
     """
 
@@ -104,7 +103,6 @@ class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         jitter: each coordinate of each copy is moved by up to this, in m, drawn from the scene's seed.
         interval: copies appear one after another, this far apart, in s.
         turn_deg, about: everything above is turned by this angle about this point, velocity included.
-        wheels: it drives.
         colour: for views, as ``#rrggbb``.
     """
 
@@ -223,9 +221,7 @@ class Prediction(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     the names that ``theory`` may use; see ``course.sandbox.scene.expression``.
 
     Attributes:
-        question: asks for it.
         probe: what answers it.
-        unit: of the answer.
         theory: a formula for it in parameters, ``g``, ``step`` and ``body.mass`` and the like.
         why: where the formula comes from, and the usual reasoning behind a wrong guess.
         near: a guess this close to the simulation counts as right; a fraction of the answer.

@@ -22,8 +22,6 @@ class Setting:
     Attributes:
         low, high: the range, both included.
         notch: how much one key press or one step of a slider changes it; a factor if ``times``.
-        times: whether ``notch`` multiplies.
-        whole: whether it is a whole number.
     """
 
     name: str

@@ -92,8 +92,6 @@ class Experiment:
 
     Args:
         world: before its first step.
-        chosen: its scene.
-        guess: given before, if there is one.
         keep: called with each comparison that has a guess.
     """
 

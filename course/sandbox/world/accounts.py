@@ -278,7 +278,6 @@ class Clock:
     Attributes:
         since, at: the time in s and the number of steps when the size was last changed.
         size: of a step, in s.
-        steps: made so far.
     """
 
     size: float
@@ -307,7 +306,6 @@ class Accounts:
     """The accounts of one space.
 
     Args:
-        space: whose bodies.
         gravity: in m/s².
     """
 

@@ -73,7 +73,6 @@ class Block:
         start: where the bodies were before the first of the steps, (n, 2), in m.
         states: state at the end of each, (k, n, 6), columns as in ``COLUMNS``. Like the contacts these
             are the engine's own memory: good until the next step, so copy what is to be kept.
-        contacts: during them.
     """
 
     first_step: int
@@ -147,7 +146,6 @@ class Ledger:
         """Book the losses of a block, each from the impulses of its own kind.
 
         Args:
-            block: the steps.
             step: their size, in s.
             given: the impulses of a hand, (k, n, 3), in N s and N m s.
             tied: the joints, if there are any.
@@ -208,7 +206,6 @@ class Ledger:
         """What impulses gave that acted inside the steps, (k,), in J.
 
         Args:
-            block: the steps.
             impulses: (k, n, 3), in N s and N m s.
         """
         work: Floats = ((block.before + block.states[:, :, 3:]) * impulses).sum(axis=(1, 2)) / 2
@@ -347,7 +344,6 @@ class Space:
 
     Args:
         parts: the bodies, in the order they are added.
-        joints: what holds them together.
     """
 
     def __init__(
@@ -598,11 +594,7 @@ class Space:
 
 
 class Recorder:
-    """Copies states and contacts out after each step; appending costs no Python per body.
-
-    Args:
-        space: whose.
-    """
+    """Copies states and contacts out after each step; appending costs no Python per body."""
 
     def __init__(self, space: Space) -> None:
         self._space = space

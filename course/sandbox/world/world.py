@@ -117,7 +117,6 @@ class World:
     """A running scene.
 
     Args:
-        scene: what to build.
         settings: values for ``SETTINGS``; the scene's own where left out.
         receipt: keep the account of energy. Without it no contact is told, and stepping is faster.
 

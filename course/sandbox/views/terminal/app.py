@@ -59,7 +59,6 @@ class SandboxApp(FullScreenApp):
 
     Args:
         stage: what is played; None to begin with the gallery.
-        desk: what may be asked of the program around this.
         clock: real time, in s.
     """
 

@@ -205,7 +205,6 @@ class Sight:
     """Draws a stage into the room that there is.
 
     Attributes:
-        camera: of the last frame.
         names: label every body.
         trace: the body whose path is drawn.
         ghost: draw the run before as well.

@@ -247,11 +247,9 @@ class Session:
 
     Args:
         stage: what is played; the first scene, with the gallery open, if there is none.
-        desk: what may be asked of the program around it.
         clock: real time in s.
 
     Attributes:
-        stage: what is played.
         gallery: pages open with the gallery.
     """
 

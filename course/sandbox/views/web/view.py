@@ -45,7 +45,6 @@ def play(
 
     Args:
         chosen: the scene with the parameters that go into it; None to begin with the gallery.
-        desk: what the page may ask of the program around it.
         port: 0 for any that is free.
         open_browser: show the page; else only say where it is.
         say: takes lines for the user.
@@ -182,7 +181,6 @@ class Guard:
     """Lets only requests through that a page of this server can have made.
 
     Args:
-        app: what it stands in front of.
         port: of the server.
         token: first part of every path.
     """
@@ -257,8 +255,6 @@ def make_app(
     """The whole server of one world.
 
     Args:
-        session: the world.
-        port: where it listens.
         token: what the address must contain.
         ready: called once the world runs.
         failed: called if it cannot go on.

@@ -15,12 +15,7 @@ from pathlib import Path
 from course.authoring.coverage import IsCommand, audit_coverage
 from course.authoring.exercises.diagnosis import audit_diagnoses
 from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
-from course.authoring.exercises.grading import (
-    GradeSources,
-    declared_checks,
-    grade_sources,
-    solutions_folder,
-)
+from course.authoring.exercises.grading import GradeSources, declared_checks, grade_sources, solutions_folder
 from course.authoring.exercises.proofs import Proof, Prover, caught_by, plan
 from course.authoring.exercises.source import CheckSource, audit_style
 from course.authoring.lessons.lint import (

@@ -15,16 +15,7 @@ import msgspec
 
 from course.catalog.locate import Content
 from course.catalog.locate import content as current_content
-from course.catalog.models import (
-    LONGEST,
-    CourseRef,
-    Exercise,
-    Lesson,
-    Rubric,
-    Syllabus,
-    Times,
-    fields_of,
-)
+from course.catalog.models import LONGEST, CourseRef, Exercise, Lesson, Rubric, Syllabus, Times, fields_of
 from course.catalog.reading import Document, read_document, read_text, split_front_matter
 from course.errors import ContentError, NotFoundError
 from course.ids import SLUG, WARM_UPS, ExerciseId, LessonId

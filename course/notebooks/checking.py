@@ -447,7 +447,8 @@ def _submission(exercise: Exercise, source: Source) -> Submission:
         return _of_file(exercise, source)
     if isinstance(source, str):
         return _of_text(exercise, source.encode("utf-8", "replace"))
-    return _of_pieces(exercise, source)
+    texts = [*given(exercise), *(piece if isinstance(piece, str) else _source(piece) for piece in source)]
+    return _of_text(exercise, "\n\n\n".join(texts).encode("utf-8", "replace"))
 
 
 def _shell() -> Any:
@@ -478,12 +479,6 @@ def _of_text(exercise: Exercise, text: bytes) -> Submission:
             code="too_large",
         )
     return Submission({exercise.module: text})
-
-
-def _of_pieces(exercise: Exercise, pieces: Iterable[Any]) -> Submission:
-    """Functions and texts, below the exercise's own imports and constants."""
-    texts = [*given(exercise), *(piece if isinstance(piece, str) else _source(piece) for piece in pieces)]
-    return _of_text(exercise, "\n\n\n".join(texts).encode("utf-8", "replace"))
 
 
 def _source(piece: Any) -> str:

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from html import escape
 
 from course.catalog.load import Catalog
-from course.notebooks.cells import Cell, code, document, markdown, opening
-from course.notebooks.lowering import escaped
+from course.notebooks.cells import Cell, code, document, escaped, markdown, opening
 from course.quizzing.bank import (
     LETTERS,
     Bank,

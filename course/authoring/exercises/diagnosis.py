@@ -451,10 +451,7 @@ def _dumped(node: Any) -> str:
 
 
 def _tried(
-    catalog: Catalog,
-    exercise: Exercise,
-    scope: str,
-    chosen: list[Wrong],
+    catalog: Catalog, exercise: Exercise, scope: str, chosen: list[Wrong]
 ) -> Iterator[tuple[str, tuple[str, ...], str]]:
     source = solution_path(catalog, exercise).read_text(encoding="utf-8")
     own, table = words(exercise.id), read_table(exercise.readme_path.parent)

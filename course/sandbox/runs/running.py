@@ -360,7 +360,7 @@ def account(receipt: Receipt) -> list[str]:
     lines = [
         f"Energy at the start {_joule(receipt.start)}"
         + (f", {how} since {_joule(abs(receipt.given))}" if abs(receipt.given) > 1e-9 else "")
-        + f"; now {_joule(kinetic)} of motion and {_joule(receipt.potential)} of height.",
+        + f"; now {_joule(kinetic)} of motion and {_joule(receipt.potential)} of height."
     ]
     in_rods = f", lost in rods {_joule(rods)}" if rods else ""
     lines.append(f"Lost in contacts {_joule(contacts)}, lost to friction {_joule(friction)}{in_rods}.")

@@ -239,13 +239,11 @@ def _check_formulas(document: Document[Scene]) -> None:
 def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:
     """No settings, then each alone at either end of its range, if formulas use these names."""
     yield {}
-    for parameter in scene.parameter:
-        yield {parameter.name: parameter.low}
-        yield {parameter.name: parameter.high}
-    for name, setting in SETTINGS.items():
-        if {"gravity": "g"}.get(name, name) in named:
-            yield {name: setting.low}
-            yield {name: setting.high}
+    ranged: list[Any] = [*scene.parameter]
+    ranged += [one for one in SETTINGS.values() if {"gravity": "g"}.get(one.name, one.name) in named]
+    for one in ranged:
+        yield {one.name: one.low}
+        yield {one.name: one.high}
 
 
 def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool = False) -> Chosen:

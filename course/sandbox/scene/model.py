@@ -42,6 +42,9 @@ Point = tuple[Coordinate, Coordinate]
 #: The shape of a body as a scene says it, and as the engine and all views know it: a box has four corners.
 Shape = Literal["circle", "box", "polygon", "segment"]
 Form = Literal["circle", "polygon", "segment"]
+#: What a probe reads: of one body, and of several together.
+OfOne = Literal["x", "y", "vx", "vy", "speed", "angle_deg", "spin"]
+OfMany = Literal["kinetic", "momentum_x", "contacts", "contact_time", "count", "mean", "spread"]
 
 
 class Material(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -188,22 +191,7 @@ class Probe(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
 
     name: Name
-    quantity: Literal[
-        "x",
-        "y",
-        "vx",
-        "vy",
-        "speed",
-        "angle_deg",
-        "spin",
-        "kinetic",
-        "momentum_x",
-        "contacts",
-        "contact_time",
-        "count",
-        "mean",
-        "spread",
-    ]
+    quantity: Literal[OfOne, OfMany]
     of: Pattern
     other: Name | None = None
     when: Literal["start", "end", "max", "min", "at", "after"] = "end"

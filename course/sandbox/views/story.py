@@ -96,11 +96,7 @@ class Experiment:
     """
 
     def __init__(
-        self,
-        world: World,
-        chosen: Chosen,
-        guess: float | None,
-        keep: Callable[[Comparison], None] | None,
+        self, world: World, chosen: Chosen, guess: float | None, keep: Callable[[Comparison], None] | None
     ) -> None:
         self._world, self._chosen, self.keep = world, chosen, keep
         self._listeners = tuple(world.on_block)

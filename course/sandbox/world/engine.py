@@ -31,9 +31,6 @@ from course.sandbox.scene.model import Joint, Part
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int64]
 
-#: Columns of a state: a row per body.
-COLUMNS = ("x", "y", "angle", "vx", "vy", "spin")
-
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
@@ -71,8 +68,8 @@ class Block:
         times: at their ends, in s, (k,).
         before: velocities and spin at the start of each step, (k, n, 3).
         start: where the bodies were before the first of the steps, (n, 2), in m.
-        states: state at the end of each, (k, n, 6), columns as in ``COLUMNS``. Like the contacts these
-            are the engine's own memory: good until the next step, so copy what is to be kept.
+        states: at the end of each, (k, n, 6): x, y, angle, vx, vy, spin. Like the contacts these are the
+            engine's own memory: good until the next step, so copy what is to be kept.
     """
 
     first_step: int
@@ -306,8 +303,6 @@ class Ties:
 _SOFT = 1e-12
 #: How often a body that is placed is moved until it fits, and how well it has to, in m.
 _TRIES, _NEAR = 80, 1e-4
-#: Ids of bodies are addresses.
-Ids: TypeAlias = NDArray[np.uint64]
 
 _STATE = (
     batch.BodyFields.POSITION
@@ -587,8 +582,8 @@ class Space:
         batch.get_space_bodies(self.space, _STATE, self._buffer)
         return np.frombuffer(self._buffer.float_buf(), dtype=np.float64).reshape(-1, 6).copy()
 
-    def indices(self, ids: Ids) -> Ints:
-        """Rows of bodies, from the engine's ids."""
+    def indices(self, ids: NDArray[np.uint64]) -> Ints:
+        """Rows of bodies, from the engine's ids, which are addresses."""
         found: Ints = self._order.take(self._sorted.searchsorted(ids))
         return found
 

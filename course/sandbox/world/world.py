@@ -1,8 +1,8 @@
 """A scene that runs: fixed steps, one stream of events, and an account of energy and momentum.
 
 Views know nothing of the engine. They say how much real time has passed (``advance``), draw ``snapshot()``,
-read ``drain_events()``, ``receipt`` and ``history``, and pass on the user's actions. Each action also goes to
-``on_input``, with the tick before which it happened: all that a replay needs.
+read ``drain_events()``, ``receipt`` and ``samples()``, and pass on the user's actions. Each action also goes
+to ``on_input``, with the tick before which it happened: all that a replay needs.
 """
 
 import hashlib

@@ -158,11 +158,7 @@ def keys_line(width: int, *, paused: bool, past: bool, compared: bool = False) -
 
 
 def panel(
-    world: World,
-    parameters: Sequence[tuple[str, str]],
-    width: int,
-    height: int,
-    past: Frame | None = None,
+    world: World, parameters: Sequence[tuple[str, str]], width: int, height: int, past: Frame | None = None
 ) -> list[Line]:
     """Energy, momentum and settings, for a column beside the picture.
 

@@ -67,13 +67,15 @@ def play(
         failures.append(error)
         server.should_exit = True
 
+    def ready() -> None:
+        say(f"The world is at {address}")
+        invite(address, say, show=open_browser)
+
     with contextlib.closing(_listener(port)) as listener:
         number = listener.getsockname()[1]
         token = secrets.token_urlsafe(24)
         address = f"http://{_LOOPBACK}:{number}/{token}/"
-        app = make_app(
-            session, number, token, ready=lambda: _invite(address, say, show=open_browser), failed=failed
-        )
+        app = make_app(session, number, token, ready=ready, failed=failed)
         server = uvicorn.Server(_configured(app))
         with contextlib.suppress(KeyboardInterrupt):
             server.run(sockets=[listener])
@@ -99,11 +101,6 @@ def _configured(app: ASGIApp) -> uvicorn.Config:
         proxy_headers=False,
         server_header=False,
     )
-
-
-def _invite(address: str, say: Callable[[str], None], *, show: bool) -> None:
-    say(f"The world is at {address}")
-    invite(address, say, show=show)
 
 
 def _listener(port: int) -> socket.socket:

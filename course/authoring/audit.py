@@ -143,10 +143,8 @@ def audit(
     catalog.content.instructors()
     findings = Findings(catalog.content.root)
     try:
-        lessons, exercises = _chosen(catalog, only)
-        lessons, exercises = (
-            tuple(each for each in ids if each not in without) for ids in (lessons, exercises)
-        )
+        chosen = _chosen(catalog, only)
+        lessons, exercises = (tuple(one for one in ids if one not in without) for ids in chosen)
         if only is None:
             audit_syllabus(catalog, findings)
             if is_command is not None:

@@ -1,7 +1,7 @@
 """The catalogue: lessons and exercises of one course, each read when it is first needed.
 
 Listing ids costs one small file or one folder listing, so that shell completion is instant; everything else
-is read once and kept. Facts that a type cannot express are checked in ``course.catalog.load``.
+is read once and kept, after the rules that no type can express.
 """
 
 import math

@@ -329,10 +329,8 @@ def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:
     for match in DECIMAL.finditer(words):
         if match[0] not in public:
             yield match[0]
-    numbers = (
-        one for one in leaves([check.input, check.expected, check.actual]) if type(one) in {int, float}
-    )
-    values = set(map(float, numbers))
+    shown = leaves([check.input, check.expected, check.actual])
+    values = {float(one) for one in shown if type(one) in {int, float}}
     for match in _INTEGER.finditer(words):
         if abs(int(match[0])) >= _TELLING and float(match[0]) in values:
             yield match[0]

@@ -65,10 +65,8 @@ def parse(path: Path) -> ast.Module:
         return ast.parse(text, filename=str(path))
     except (SyntaxError, ValueError) as error:
         line = getattr(error, "lineno", None)
-        words = getattr(error, "msg", None) or str(error)
-        raise ContentError(
-            path, line, f"this is not valid Python: {words}.", help="Correct the line."
-        ) from None
+        problem = f"this is not valid Python: {getattr(error, 'msg', None) or error}."
+        raise ContentError(path, line, problem, help="Correct the line.") from None
 
 
 def signatures(tree: ast.Module) -> dict[str, Signature]:

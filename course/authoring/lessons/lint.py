@@ -352,9 +352,7 @@ class LinkChecker:
 
 def _anchors(path: Path, *, lesson: bool) -> frozenset[str]:
     if lesson:
-        return frozenset(
-            slug(block) for block in walk_blocks(read_blocks(path)) if isinstance(block, Heading)
-        )
+        return frozenset(slug(one) for one in walk_blocks(read_blocks(path)) if isinstance(one, Heading))
     from markdown_it import MarkdownIt
 
     tokens = MarkdownIt("commonmark").enable("table").parse(read_text(path))

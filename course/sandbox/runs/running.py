@@ -104,9 +104,7 @@ class Probes:
         """When probes read, by the settings at the first step: until then they may change."""
         given = {p.name: p.time for p in self._scene.probe if p.time is not None}
         values = values_of(self._now()) if any(isinstance(time, str) for time in given.values()) else {}
-        return {
-            name: evaluate(time, values) if isinstance(time, str) else time for name, time in given.items()
-        }
+        return {name: evaluate(at, values) if isinstance(at, str) else at for name, at in given.items()}
 
     def _first_contact(self, probe: Probe, block: Block) -> int | None:
         """The step of the block in which the probe's two met."""

@@ -381,14 +381,13 @@ class Space:
         return [joint for joint in self.joints if body in (joint.a, joint.b)]
 
     def _insert(self, part: Part) -> None:
-        body = (
-            pymunk.Body(body_type=pymunk.Body.STATIC) if part.fixed else pymunk.Body(part.mass, part.moment)
-        )
-        body.position = part.x, part.y
-        body.angle = part.angle
+        body = pymunk.Body(body_type=pymunk.Body.STATIC)
         if not part.fixed:
+            body = pymunk.Body(part.mass, part.moment)
             body.velocity = part.vx, part.vy
             body.angular_velocity = part.spin
+        body.position = part.x, part.y
+        body.angle = part.angle
         shape: pymunk.Shape
         match part.shape:
             case "circle":
@@ -530,14 +529,12 @@ class Space:
                 moved -= depth
         return moved
 
-    def set_material(self, *, restitution: float | None = None, friction: float | None = None) -> None:
-        """Give every movable body another restitution or friction; fixed ones keep theirs."""
+    def set_material(self, settings: Mapping[str, float]) -> None:
+        """Give every movable body the restitution and friction among ``settings``; fixed ones keep theirs."""
         for part, _, shape in self._bodies.values():
             if not part.fixed:
-                if restitution is not None:
-                    shape.elasticity = restitution
-                if friction is not None:
-                    shape.friction = friction
+                shape.elasticity = settings.get("restitution", shape.elasticity)
+                shape.friction = settings.get("friction", shape.friction)
 
     def nearest(self, x: float, y: float, reach: float) -> str | None:
         """The movable body closest to a place, if its surface is within ``reach`` of it, in m."""

@@ -163,9 +163,7 @@ class World:
             iterations=int(self.settings["iterations"]),
             slop=scene.slop,
         )
-        self._space.set_material(
-            restitution=self.settings.get("restitution"), friction=self.settings.get("friction")
-        )
+        self._space.set_material(self.settings)
         self._space.space.gravity = self._gravity()
         self._wall()
         self._clock = Clock(self.settings["step"])
@@ -334,10 +332,8 @@ class World:
         if key == "gravity":
             self._space.space.gravity = self._gravity()
             self._accounts.recast(self._gravity())
-        elif key == "restitution":
-            self._space.set_material(restitution=amount)
-        elif key == "friction":
-            self._space.set_material(friction=amount)
+        elif key in {"restitution", "friction"}:
+            self._space.set_material({key: amount})
         elif key == "iterations":
             self._space.space.iterations = int(amount)
         elif key == "step":

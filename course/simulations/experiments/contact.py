@@ -54,10 +54,8 @@ def _run_collision(p: Mapping[str, Any]) -> Result:
     meets = math.isfinite(due)
     end = p["duration"]
     wait = due if meets else end
-    ends = (
-        -half + p["speed1"] * wait + after1 * (end - wait),
-        half + p["speed2"] * wait + after2 * (end - wait),
-    )
+    left = end - wait
+    ends = (-half + p["speed1"] * wait + after1 * left, half + p["speed2"] * wait + after2 * left)
     kept_theory = float(0.5 * p["mass1"] * after1**2 + 0.5 * p["mass2"] * after2**2)
     rows = (
         Row("time of contact", met, "s", due, "(distance - 2 r) / (v₁ - v₂)"),

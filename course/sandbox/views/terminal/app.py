@@ -241,9 +241,8 @@ class SandboxApp(FullScreenApp):
     def _draw(self, now: float) -> None:
         width, height = self.canvas.size
         if width and height:
-            self.canvas.show(
-                self.sight.draw(width, height, now, pointer=self.pointer.shown, aim=self.pointer.aim)
-            )
+            hand = self.pointer
+            self.canvas.show(self.sight.draw(width, height, now, pointer=hand.shown, aim=hand.aim))
         self.head.show([head(self.world, self.stage.t, self._state(), self.stage.pace, self._room.width)])
 
     def _state(self) -> str:
@@ -414,10 +413,8 @@ class SandboxApp(FullScreenApp):
         return f"{name}: {value:g}"
 
     def action_help(self) -> None:
-        wheels = "left" in self.world.settings
-        self.push_screen(
-            PageOverlay("Keys, and this scene", help_pages(self.stage.chosen.scene, wheels=wheels))
-        )
+        pages = help_pages(self.stage.chosen.scene, wheels="left" in self.world.settings)
+        self.push_screen(PageOverlay("Keys, and this scene", pages))
 
     def action_events(self) -> None:
         page = self._lines or ["Nothing happened yet."]

@@ -15,12 +15,7 @@ from pathlib import Path
 from course.authoring.coverage import IsCommand, audit_coverage
 from course.authoring.exercises.diagnosis import audit_diagnoses
 from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
-from course.authoring.exercises.grading import (
-    GradeSources,
-    declared_checks,
-    grade_sources,
-    solutions_folder,
-)
+from course.authoring.exercises.grading import GradeSources, declared_checks, grade_sources, solutions_folder
 from course.authoring.exercises.proofs import Proof, Prover, caught_by, plan
 from course.authoring.exercises.source import CheckSource, audit_style
 from course.authoring.lessons.lint import (
@@ -132,7 +127,6 @@ def audit(
     """Check the course, or one lesson or exercise of it.
 
     Args:
-        catalog: the course; it needs its solutions and hidden graders.
         only: id of a lesson, an exercise, a question or a scene; None for everything.
         without: ids of lessons and exercises to leave out, where each is checked by itself.
         on_progress: called at the start and after each submission with the number graded and the total.
@@ -149,10 +143,8 @@ def audit(
     catalog.content.instructors()
     findings = Findings(catalog.content.root)
     try:
-        lessons, exercises = _chosen(catalog, only)
-        lessons, exercises = (
-            tuple(each for each in ids if each not in without) for ids in (lessons, exercises)
-        )
+        chosen = _chosen(catalog, only)
+        lessons, exercises = (tuple(one for one in ids if one not in without) for ids in chosen)
         if only is None:
             audit_syllabus(catalog, findings)
             if is_command is not None:

@@ -156,12 +156,7 @@ def new_exercise(
 
 
 def _words_of(
-    catalog: Catalog,
-    exercise_id: str,
-    functions: Sequence[Function],
-    title: str,
-    summary: str,
-    lesson: str,
+    catalog: Catalog, exercise_id: str, functions: Sequence[Function], title: str, summary: str, lesson: str
 ) -> dict[str, Any]:
     """The values for the templates of an exercise or a warm-up, except its place in the list."""
     name = ExerciseId(exercise_id)

@@ -1,7 +1,7 @@
 """The catalogue: lessons and exercises of one course, each read when it is first needed.
 
 Listing ids costs one small file or one folder listing, so that shell completion is instant; everything else
-is read once and kept. Facts that a type cannot express are checked in ``course.catalog.load``.
+is read once and kept, after the rules that no type can express.
 """
 
 import math
@@ -15,16 +15,7 @@ import msgspec
 
 from course.catalog.locate import Content
 from course.catalog.locate import content as current_content
-from course.catalog.models import (
-    LONGEST,
-    CourseRef,
-    Exercise,
-    Lesson,
-    Rubric,
-    Syllabus,
-    Times,
-    fields_of,
-)
+from course.catalog.models import LONGEST, CourseRef, Exercise, Lesson, Rubric, Syllabus, Times, fields_of
 from course.catalog.reading import Document, read_document, read_text, split_front_matter
 from course.errors import ContentError, NotFoundError
 from course.ids import SLUG, WARM_UPS, ExerciseId, LessonId

@@ -147,10 +147,7 @@ def _installed(package: Path) -> Content:
     shipped = package / "content"
     if shipped.is_dir():
         return Content(
-            root=package,
-            exercises=shipped / "exercises",
-            lessons=package / "lessons",
-            quiz=shipped / "quiz",
+            root=package, exercises=shipped / "exercises", lessons=package / "lessons", quiz=shipped / "quiz"
         )
     root = package.parent
     if not (root / "pyproject.toml").is_file() or not (root / "exercises").is_dir():

@@ -46,8 +46,6 @@ def parse_lesson(body: str, file: Path, *, first_line: int = 1) -> tuple[b.Block
     """Parse the Markdown of a lesson.
 
     Args:
-        body: the text below the front matter.
-        file: where it came from, for messages.
         first_line: the line of the file that ``body`` starts on, counted from 1.
     """
     from markdown_it.tree import SyntaxTreeNode

@@ -8,8 +8,6 @@ raises MathError, so no reader gets a formula that was only half understood. Its
 the words by hand.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from textwrap import dedent

@@ -97,9 +97,7 @@ def read_questions(folder: Path) -> tuple[Document[Question], ...]:
     """The questions of a quiz in their order, with the lines they stand on; none where there is no folder."""
     if not folder.is_dir():
         return ()
-    documents = sorted(
-        (_read(path) for path in folder.glob("*.toml")), key=lambda d: (d.value.order, d.value.id)
-    )
+    documents = sorted(map(_read, folder.glob("*.toml")), key=lambda d: (d.value.order, d.value.id))
     for one, other in itertools.pairwise(documents):
         if one.value.order == other.value.order:
             problem = f"question {one.value.id} has the order {one.value.order} too."

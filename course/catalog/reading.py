@@ -4,8 +4,6 @@ Every file of the course is UTF-8 and declares a ``format_version``. The type th
 the rest; msgspec's errors are put into plain words here.
 """
 
-from __future__ import annotations
-
 import contextlib
 import re
 import tomllib
@@ -228,12 +226,7 @@ def read_text(path: Path) -> str:
 
 
 def read_document(
-    path: Path,
-    kind: type[T],
-    *,
-    text: str | None = None,
-    first_line: int = 1,
-    reserved: Iterable[str] = (),
+    path: Path, kind: type[T], *, text: str | None = None, first_line: int = 1, reserved: Iterable[str] = ()
 ) -> Document[T]:
     """The TOML file at ``path`` as a value of the type ``kind``, with the lines that its values stand on.
 
@@ -245,7 +238,11 @@ def read_document(
     try:
         data = toml(source)
     except tomllib.TOMLDecodeError as error:
-        said, advice = _not_toml(str(error).rsplit(" (at ", 1)[0])  # the error gives the place
+        why = str(error).rsplit(" (at ", 1)[0]  # the error gives the place
+        said = f"this is not valid TOML: {why}."
+        advice = "Check quotes, brackets and commas here and on the line above."
+        if why.startswith(("Cannot overwrite", "Cannot declare")):
+            said, advice = "this key or table stands in the file twice.", "Keep one of the two."
         line = first_line - 1 + syntax_error_line(error, source)
         raise ContentError(path, line, said, help=advice) from None
     raw = Document(path, data, LineMap(source, first_line))
@@ -257,13 +254,6 @@ def read_document(
         return Document(path, msgspec.convert(data, kind), raw.lines)
     except msgspec.ValidationError as error:
         _raise_in_words(raw, str(error), kind, tuple(reserved))
-
-
-def _not_toml(why: str) -> tuple[str, str]:
-    """What is wrong with a text that is no TOML, and what to do."""
-    if why.startswith(("Cannot overwrite", "Cannot declare")):
-        return "this key or table stands in the file twice.", "Keep one of the two."
-    return f"this is not valid TOML: {why}.", "Check quotes, brackets and commas here and on the line above."
 
 
 def _check_version(raw: Document[dict[str, Any]]) -> None:
@@ -303,7 +293,8 @@ def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[s
         _as_toml_writes_it(raw, steps, _type_at(kind, steps))
         wanted = _in_words(match["wanted"].removesuffix(" | null")) + (match["more"] or "")  # TOML has none
         if "regex" in wanted:
-            wanted = _described(_type_at(kind, steps)) or wanted
+            says = getattr(_type_at(kind, steps), "extra_json_schema", None) or {}
+            wanted = str(says.get("description", "")) or wanted
         given = f", and is {_in_words(match['given'])}" if match["given"] else ""
         given = f", and has {match['count']}" if match["count"] else given
         fix = "Write values in brackets: [1, 2]." if wanted == "a list" else f"Write {wanted}."
@@ -335,11 +326,6 @@ def _as_toml_writes_it(raw: Document[Any], steps: Keys, info: Any) -> None:
                 fix = f'Write "{key}" = ..., with quotes around the key.'
                 problem = f"{_named((*steps, first))} is a table: the points in {key} divide it."
                 raw.fail((*steps, *path), problem, fix=fix)
-
-
-def _described(info: Any) -> str:
-    """What the type of a text says of itself; "" if it says nothing."""
-    return str((getattr(info, "extra_json_schema", None) or {}).get("description", ""))
 
 
 def _unknown_key(raw: Document[Any], steps: Keys, key: str, kind: type, *, hide: tuple[str, ...]) -> NoReturn:

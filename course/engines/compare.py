@@ -29,16 +29,7 @@ import msgspec
 from course.catalog.locate import cache_folder
 from course.engines import reference
 from course.engines.registry import ENGINES, Availability, EngineInfo, availability, get
-from course.engines.results import (
-    DEFAULT,
-    OK,
-    TUNED,
-    Cache,
-    Comparison,
-    EngineState,
-    Row,
-    this_machine,
-)
+from course.engines.results import DEFAULT, OK, TUNED, Cache, Comparison, EngineState, Row, this_machine
 from course.engines.scenarios import BOXES, DT, SCENARIOS
 from course.engines.scenarios import get as get_scenario
 

@@ -49,13 +49,7 @@ ENGINES: dict[str, EngineInfo] = {
             single=True,
         ),
         EngineInfo(
-            "bullet",
-            "Bullet 2.84",
-            "panda3d",
-            "engines",
-            "Zlib",
-            "joints as constraints: games",
-            single=True,
+            "bullet", "Bullet 2.84", "panda3d", "engines", "Zlib", "joints as constraints: games", single=True
         ),
         EngineInfo(
             "rapier",

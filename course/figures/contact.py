@@ -44,8 +44,7 @@ def pair() -> Figure:
         axes.set_xlabel("time (s)")
     left.set(xlim=(0, 5), ylim=(-6.8, 6.8))
     left.set_ylabel("position (m)")
-    title(figure, "Both pictures end with the balls far apart; only one has a collision in it")
-    return figure
+    return title(figure, "Both pictures end with the balls far apart; only one has a collision in it")
 
 
 def _two(axes: Axes, t: Array, x: Array, line: str) -> None:
@@ -81,8 +80,7 @@ def tunnelling() -> Figure:
     note(axes, f"{limit:g} m/s: one step\nspans wall and ball", (limit, 0.0), (0.6, 32.0))
     axes.set(xlim=(0, 24), ylim=(-12, 100))
     axes.set(xlabel="speed of the ball (m/s)", ylabel="starts that miss the wall (%)")
-    title(figure, "A check once a step misses a wall that the ball jumps over")
-    return figure
+    return title(figure, "A check once a step misses a wall that the ball jumps over")
 
 
 def stacks() -> Figure:
@@ -101,8 +99,7 @@ def stacks() -> Figure:
     axes.axhline(1.0, color=PALETTE["black"], linewidth=0.8)
     axes.set(xscale="log", yscale="log", xlim=(1, 1100), ylim=(0.4, 110))
     axes.set(xlabel="iterations of the solver (number)", ylabel="weight not yet carried by the ground (%)")
-    title(figure, "Twice as high takes four times as many iterations")
-    return figure
+    return title(figure, "Twice as high takes four times as many iterations")
 
 
 # ---
@@ -132,8 +129,7 @@ def rest() -> Figure:
         word(axes, x, y, name, color)
     axes.set(xlim=(0, 0.4), ylim=(1.85, -0.1), xticks=[0.0, 0.1, 0.2, 0.3, 0.4])
     axes.set(xlabel="time since the ball was laid down (s)", ylabel="depth in the floor (mm)")
-    title(figure, "How deep a resting ball lies depends on the contact model")
-    return figure
+    return title(figure, "How deep a resting ball lies depends on the contact model")
 
 
 def phases() -> Figure:
@@ -150,8 +146,7 @@ def phases() -> Figure:
     word(axes, 0.62, 0.43, "ERP 0.2 in the velocity", "vermillion")
     axes.set(xlim=(-0.01, 1.0), ylim=(0.16, 0.5))
     axes.set(xlabel="start, in parts of a step's fall (no unit)", ylabel="rebound (share of the height)")
-    title(figure, "How high a ball bounces depends on when the engine looks")
-    return figure
+    return title(figure, "How high a ball bounces depends on when the engine looks")
 
 
 def cone() -> Figure:
@@ -175,14 +170,12 @@ def cone() -> Figure:
     axes.set(xlim=(-0.03, 1.15), ylim=(-0.03, 0.74), aspect="equal")
     axes.legend(loc="upper right", handlelength=3.0, title="friction by a")
     axes.set(xlabel="x, an axis of the pyramid (m)", ylabel="y (m)")
-    title(figure, "Along its diagonal a friction pyramid is too strong or too weak")
-    return figure
+    return title(figure, "Along its diagonal a friction pyramid is too strong or too weak")
 
 
 def corners() -> Figure:
     """Two boxes whose shadows are apart in one direction; a box that the second of two tiles pushes back."""
-    figure, (left, right) = new_figure(3.2, 1, 2)
-    figure.subplots_adjust(wspace=0.28)
+    figure, (left, right) = new_figure(3.2, 1, 2, wspace=0.28)
     half = 0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
     slant = np.array([1.0, 1.0]) / math.sqrt(2)
     across = np.array([1.0, -1.0]) / math.sqrt(2)
@@ -219,8 +212,7 @@ def corners() -> Figure:
     right.set_title("Over a seam")
     for axes, unit in ((left, "m"), (right, "mm")):
         axes.set(xlabel=f"x ({unit})", ylabel=f"y ({unit})")
-    title(figure, "One direction shows that boxes are apart; a seam sends them back")
-    return figure
+    return title(figure, "One direction shows that boxes are apart; a seam sends them back")
 
 
 # ---
@@ -243,8 +235,7 @@ def free_spin(method: str) -> tuple[Array, Array, Array]:
 
 def turning_over() -> Figure:
     """Angular velocity about the three axes, and the energy by three methods."""
-    figure, (above, below) = new_figure(5.0, 2, 1, sharex=True)
-    figure.subplots_adjust(hspace=0.26)
+    figure, (above, below) = new_figure(5.0, 2, 1, sharex=True, hspace=0.26)
     t, w, _ = free_spin("split")
     # The second axis tells the story; the other two only lend it their energy.
     looks = ((PALETTE["sky"], ":", 1.4), (PALETTE["blue"], "-", 2.0), (PALETTE["purple"], "--", 1.2))
@@ -273,5 +264,4 @@ def turning_over() -> Figure:
     below.set_title("Only explicit Euler adds energy")
     below.set(ylim=(-3, 34), xticks=range(0, 21, 5))
     below.set(xlabel="time (s)", ylabel="energy gained (%)")
-    title(figure, "A free body flips over by itself, and explicit Euler adds energy each time")
-    return figure
+    return title(figure, "A free body flips over by itself, and explicit Euler adds energy each time")

@@ -163,8 +163,6 @@ def marched(name: str, system: Any, t: Any, states: Any) -> Curve | None:
     """The curves of a step of the student's and of the method that it is named for; None if it is none.
 
     Args:
-        name: of the step.
-        system: what was marched along.
         t, states: the times and (q, v) of the march.
     """
     from course.physics.integrators import STEPPERS, SemiImplicitEuler, State, trajectory

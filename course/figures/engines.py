@@ -73,8 +73,7 @@ def mended() -> tuple[int, int]:
 def settings() -> Figure:
     """Every engine's error in five tests, by default and well set, on logarithmic axes."""
     engines = list(ENGINES)[::-1]
-    figure, panels = new_figure(4.5, 1, len(TESTS), sharey=True)
-    figure.subplots_adjust(left=0.16, wspace=0.12)
+    figure, panels = new_figure(4.5, 1, len(TESTS), sharey=True, left=0.16, wspace=0.12)
     for axes, (test, name) in zip(panels, TESTS.items(), strict=True):
         for row, engine in enumerate(engines):
             default, tuned = (error(engine, test, setting) for setting in (DEFAULT, TUNED))
@@ -89,8 +88,7 @@ def settings() -> Figure:
     panels[2].set_xlabel("error (%), logarithmic; at the left edge 0.001 % or less")
     _key(panels[0], panels[2], panels[4])
     few, many = mended()
-    title(figure, f"Of {many} errors above {LARGE:.0f} %, {few} are gone once the options are set")
-    return figure
+    return title(figure, f"Of {many} errors above {LARGE:.0f} %, {few} are gone once the options are set")
 
 
 def _frame(axes: Axes, name: str) -> None:
@@ -179,8 +177,7 @@ def _ladders(rows: Sequence[Row], test: str) -> dict[str, list[tuple[float, floa
 
 def _steps(rows: Sequence[Row]) -> Figure:
     tests = [test for test in _TESTS if _ladders(rows, test)]
-    figure, panels = new_figure(4.0, 1, len(tests), sharey=True)
-    figure.subplots_adjust(left=0.115, right=0.985, wspace=0.1)
+    figure, panels = new_figure(4.0, 1, len(tests), sharey=True, left=0.115, right=0.985, wspace=0.1)
     if len(tests) == 1:  # which has a heading, too
         figure.subplots_adjust(top=figure.subplotpars.top - 0.05)
     for axes, test in zip(panels, tests, strict=True):
@@ -192,8 +189,7 @@ def _steps(rows: Sequence[Row]) -> Figure:
     for axes, test in zip(panels, tests, strict=True):
         _names(figure, axes, grouped(_ladders(rows, test).items(), _alike))
     panels[0].set_ylabel("error (%)")
-    title(figure, "The slope is the order of the method: most engines are first order")
-    return figure
+    return title(figure, "The slope is the order of the method: most engines are first order")
 
 
 def _alike(one: list[tuple[float, float]], other: list[tuple[float, float]]) -> bool:
@@ -311,8 +307,7 @@ def _costs(rows: Sequence[Row]) -> dict[str, list[tuple[str, float, float]]]:
 
 
 def _speed(rows: Sequence[Row]) -> Figure:
-    figure, panels = new_figure(4.4)
-    figure.subplots_adjust(left=0.115, top=0.885)
+    figure, panels = new_figure(4.4, left=0.115, top=0.885)
     axes = panels[0]
     for engine, points in _costs(rows).items():
         color = PALETTE[_LOOKS[engine][0]]
@@ -340,13 +335,7 @@ def _speed(rows: Sequence[Row]) -> Figure:
     axes.margins(x=0.08, y=0.12)
     # The name of the fastest stands to its right.
     axes.set_xlim(right=2.6 * max(x for points in _costs(rows).values() for _setting, x, _y in points))
-    _legend_speed(axes)
-    title(figure, "A stack can be made to stand still; most engines pay for it with speed")
-    return figure
-
-
-def _legend_speed(axes: Axes) -> None:
-    grey = PALETTE["grey"]
-    axes.plot([], [], "o", color=grey, markerfacecolor="white", label="as it comes")
-    axes.plot([], [], "D", color=grey, label="well set for a stack")
+    axes.plot([], [], "o", color=PALETTE["grey"], markerfacecolor="white", label="as it comes")
+    axes.plot([], [], "D", color=PALETTE["grey"], label="well set for a stack")
     axes.legend(loc="lower right")
+    return title(figure, "A stack can be made to stand still; most engines pay for it with speed")

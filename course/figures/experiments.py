@@ -1,6 +1,6 @@
 """Figures of the simulations: one for each, drawn from its result, for any settings.
 
-``render`` serves ``course sim run --plot``; ``of`` draws a simulation with its default settings, for lessons.
+``render`` serves ``course sim run --plot``; the others draw a simulation as lessons set it.
 """
 
 import functools
@@ -14,11 +14,8 @@ from matplotlib.figure import Figure
 
 from course.errors import InternalError
 from course.figures.style import METHODS, PALETTE, Array, file_of, new_figure, title
-from course.simulations.base import Result
-
-# ---
-# Each draws the result of one simulation.
-
+from course.simulations.base import Result, run
+from course.simulations.registry import get
 
 #: A curve that grows past this leaves the picture; matplotlib cannot scale to more. In shares.
 _TALLEST = 1e12
@@ -33,9 +30,29 @@ _LOOKS = (
 )
 
 
-def _rotation(result: Result) -> Figure:
+#: What draws the result of a simulation, by its id.
+_DRAWERS: dict[str, Callable[[Result], Figure]] = {}
+
+
+def _draws(name: str, *pairs: str) -> Callable[[Callable[[Result], Figure]], Callable[[], Figure]]:
+    """Marks what draws the results of a simulation; called by itself it draws the one that a lesson shows."""
+
+    def enter(drawer: Callable[[Result], Figure]) -> Callable[[], Figure]:
+        _DRAWERS[name] = drawer
+
+        @functools.wraps(drawer, updated=())
+        def build() -> Figure:
+            return draw(run(get(name), pairs))
+
+        return build
+
+    return enter
+
+
+@_draws("rotation")
+def rotation(result: Result) -> Figure:
     """Angular velocity about each axis, and the energy error of each method."""
-    figure, (upper, lower) = new_figure(5.0, 2, 1, sharex=True)
+    figure, (upper, lower) = new_figure(5.0, 2, 1, sharex=True, left=0.13, right=0.75, top=0.93)
     t = result.column("t")
     for k, (color, line) in zip((2, 1, 3), _LOOKS[:3], strict=True):
         width = 1.8 if k == 2 else 1.0
@@ -53,13 +70,13 @@ def _rotation(result: Result) -> Figure:
         )  # fmt: skip
     lower.set(xlabel="time (s)", ylabel="energy gained (%)")
     lower.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.subplots_adjust(left=0.13, right=0.75, top=0.93)
     return figure
 
 
-def _dynamics(result: Result) -> Figure:
+@_draws("dynamics", "payload=0.01")
+def dynamics(result: Result) -> Figure:
     """The arm at a few moments with the planned and the forward path of its hand, and the torques."""
-    figure, (left, right) = new_figure(3.4, 1, 2)
+    figure, (left, right) = new_figure(3.4, 1, 2, wspace=0.3)
     t = result.column("t")
     hand = np.stack([result.column("hand_x"), result.column("hand_y")], axis=-1)
     q1 = result.column("q1")
@@ -78,13 +95,13 @@ def _dynamics(result: Result) -> Figure:
         right.plot(t, result.column(f"torque{k}"), color=color, linestyle=line, label=joint)
     right.set(xlabel="time (s)", ylabel="torque (N m)", title="What inverse dynamics asks for")
     right.legend(loc="best")
-    figure.subplots_adjust(wspace=0.3)
     return figure
 
 
-def _chaos(result: Result) -> Figure:
+@_draws("chaos")
+def chaos(result: Result) -> Figure:
     """The lower rods of both pendulums, and how far apart the pendulums are."""
-    figure, (upper, lower) = new_figure(5.0, 2, 1, sharex=True)
+    figure, (upper, lower) = new_figure(5.0, 2, 1, sharex=True, top=0.93)
     t, apart = result.column("t"), result.column("separation")
     upper.plot(t, result.column("angle2_a"), color=PALETTE["blue"], linewidth=2.4, label="first")
     upper.plot(t, result.column("angle2_b"), color=PALETTE["vermillion"], linestyle="--", label="second")
@@ -101,13 +118,13 @@ def _chaos(result: Result) -> Figure:
     lower.set(xlabel="time (s)", ylabel="separation (rad)", yscale="log")
     if any(math.isfinite(row.simulated) for row in result.rows[:2]):
         lower.legend(loc="lower right")
-    figure.subplots_adjust(top=0.93)
     return figure
 
 
-def _solver_iterations(result: Result) -> Figure:
+@_draws("solver-iterations")
+def solver_iterations(result: Result) -> Figure:
     """The share of its weight that the ground feels under each stack, over the iterations."""
-    figure, (axes,) = new_figure(3.8)
+    figure, (axes,) = new_figure(3.8, left=0.14, right=0.76)
     stacks = [column for column in result.columns if column.name.startswith("load_")]
     iteration = result.column("iteration")
     for column, (color, line) in zip(stacks, _LOOKS, strict=False):
@@ -123,37 +140,37 @@ def _solver_iterations(result: Result) -> Figure:
     axes.set(xlabel="iterations done (count)", ylabel="share of the weight that\nreaches the ground (%)")
     until = f"iterations to\n{100 * (1 - tolerance):g} %"
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), title=until)
-    figure.subplots_adjust(left=0.14, right=0.76)
     return figure
 
 
-def _substeps(result: Result) -> Figure:
+@_draws("substeps")
+def substeps(result: Result) -> Figure:
     """Stretch of the longest link over time, for each way to spend the work."""
-    figure, (axes,) = new_figure(3.6)
+    figure, (axes,) = new_figure(3.6, right=0.82)
     t = result.column("t")
     for column, (color, line) in zip(result.columns[1:], _LOOKS, strict=False):
         steps, sweeps = column.name.removeprefix("stretch_").split("x")
         axes.plot(t, 100 * column.values, color=color, linestyle=line, label=f"{steps} x {sweeps}")
     axes.set(xlabel="time (s)", ylabel="stretch of the longest link (%)")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), title="substeps x\niterations")
-    figure.subplots_adjust(right=0.82)
     return figure
 
 
-def _environment(result: Result) -> Figure:
+@_draws("environment")
+def environment(result: Result) -> Figure:
     """Stopping distance over friction and rebound over restitution, each with theory."""
-    figure, (left, right) = new_figure(3.3, 1, 2)
+    figure, (left, right) = new_figure(3.3, 1, 2, wspace=0.3)
     _beside_theory(left, result, "stopping_distance", "v² / (2 μ g)")
     left.set(xlabel="friction μ (no unit)", ylabel="distance slid (m)", title="A block slides to rest")
     _beside_theory(right, result, "rebound", "e² times the drop")
     right.set(xlabel="restitution e (no unit)", ylabel="height of the rebound (m)", title="A ball bounces")
-    figure.subplots_adjust(wspace=0.3)
     return figure
 
 
-def _contact_models(result: Result) -> Figure:
+@_draws("contact-models")
+def contact_models(result: Result) -> Figure:
     """Rebound and energy kept over the phase of the step, for three ways to correct an overlap."""
-    figure, (left, right) = new_figure(3.3, 1, 2)
+    figure, (left, right) = new_figure(3.3, 1, 2, wspace=0.3)
     phase = result.column("phase")
     # Without correction and with split impulse the velocities are the same, unless a bounce is that slow.
     looks = (
@@ -172,7 +189,6 @@ def _contact_models(result: Result) -> Figure:
     left.set_ylim(bottom=0.0)
     right.set_ylim(bottom=0.0)
     right.legend(loc="lower right")
-    figure.subplots_adjust(wspace=0.3)
     return figure
 
 
@@ -188,9 +204,10 @@ def render(result: Result, kind: str) -> bytes:
     return file_of(lambda: draw(result), kind)
 
 
-def _free_fall(result: Result) -> Figure:
+@_draws("free-fall")
+def free_fall(result: Result) -> Figure:
     t = result.column("t")
-    figure, (left, right) = new_figure(3.2, 1, 2)
+    figure, (left, right) = new_figure(3.2, 1, 2, wspace=0.36)
     every = max(1, t.size // 25)
     left.plot(t, result.column("height_theory"), color=PALETTE["black"], linewidth=1.0, label="theory")
     left.plot(
@@ -207,7 +224,6 @@ def _free_fall(result: Result) -> Figure:
     right.legend(loc="upper left")
     low, high = right.get_ylim()
     right.set_ylim(low, high + 1.1 * (high - low) / 2)  # room for the legend above the curves
-    figure.subplots_adjust(wspace=0.36)
     return figure
 
 
@@ -215,8 +231,9 @@ def _nth(number: int) -> str:
     return "" if number == 1 else f"{number}th" if number > 3 else ("2nd", "3rd")[number - 2]
 
 
-def _projectile(result: Result) -> Figure:
-    figure, (axes,) = new_figure(3.6)
+@_draws("projectile", "drag=0.02")
+def projectile(result: Result) -> Figure:
+    figure, (axes,) = new_figure(3.6, right=0.68)
     x, z = result.column("x"), result.column("z")
     every = max(1, x.size // 40)
     axes.plot(
@@ -239,12 +256,12 @@ def _projectile(result: Result) -> Figure:
     axes.set(xlabel="distance (m)", ylabel="height (m)")
     axes.set_ylim(bottom=min(0.0, float(np.min(z))) - 0.03 * float(np.ptp(z) or 1.0))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.subplots_adjust(right=0.68)
     return figure
 
 
-def _collision(result: Result) -> Figure:
-    figure, (axes,) = new_figure(3.8)
+@_draws("collision")
+def collision(result: Result) -> Figure:
+    figure, (axes,) = new_figure(3.8, right=0.68)
     t, radius = result.column("t"), float(result.settings["radius"])
     looks = (("x1", "left ball", PALETTE["blue"], "-"), ("x2", "right ball", PALETTE["orange"], "--"))
     for name, label, color, line in looks:
@@ -261,12 +278,12 @@ def _collision(result: Result) -> Figure:
         axes.plot([], [], color=PALETTE["black"], linewidth=0.8, label=f"contact at {met:.4g} s")
     axes.set(xlabel="time (s)", ylabel="position (m)")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.subplots_adjust(right=0.68)
     return figure
 
 
-def _integrators(result: Result) -> Figure:
-    figure, (upper, lower) = new_figure(5.0, 2, 1, sharex=True)
+@_draws("integrators")
+def integrators(result: Result) -> Figure:
+    figure, (upper, lower) = new_figure(5.0, 2, 1, sharex=True, left=0.13, right=0.75, top=0.93)
     t, exact = result.column("t"), result.column("exact")
     for name, look in METHODS.items():
         error = _positive(np.abs(result.column(name) - exact))
@@ -277,7 +294,6 @@ def _integrators(result: Result) -> Figure:
     upper.set(ylabel="position error (m)", yscale="log")
     lower.set(ylabel="largest energy error\nso far (share of E₀)", xlabel="time (s)", yscale="log")
     upper.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.subplots_adjust(left=0.13, right=0.75, top=0.93)
     return figure
 
 
@@ -286,54 +302,9 @@ def _positive(values: Array) -> Array:
     return np.where((values > 1e-17) & (values < 1e100), values, np.nan)
 
 
-#: By the id of its simulation.
-_DRAWERS: dict[str, Callable[[Result], Figure]] = {
-    "free-fall": _free_fall,
-    "projectile": _projectile,
-    "collision": _collision,
-    "integrators": _integrators,
-    "rotation": _rotation,
-    "dynamics": _dynamics,
-    "chaos": _chaos,
-    "solver-iterations": _solver_iterations,
-    "substeps": _substeps,
-    "environment": _environment,
-    "contact-models": _contact_models,
-}
-
-
 def draw(result: Result) -> Figure:
     """The figure of a result; call it inside ``house_style``."""
     if result.simulation not in _DRAWERS:
         raise InternalError(f"The simulation {result.simulation} has no figure.")
     figure = _DRAWERS[result.simulation](result)
-    title(figure, result.headline)
-    return figure
-
-
-# ---
-# The figures of lessons: each simulation as it comes, or as the lesson sets it.
-
-
-def _of(name: str, *pairs: str) -> Callable[[], Figure]:
-    @functools.wraps(_DRAWERS[name], updated=())
-    def build() -> Figure:
-        from course.simulations.base import run
-        from course.simulations.registry import get
-
-        return draw(run(get(name), pairs))
-
-    return build
-
-
-free_fall = _of("free-fall")
-projectile = _of("projectile", "drag=0.02")
-collision = _of("collision")
-integrators = _of("integrators")
-rotation = _of("rotation")
-dynamics = _of("dynamics", "payload=0.01")
-chaos = _of("chaos")
-solver_iterations = _of("solver-iterations")
-substeps = _of("substeps")
-environment = _of("environment")
-contact_models = _of("contact-models")
+    return title(figure, result.headline)

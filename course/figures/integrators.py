@@ -65,8 +65,7 @@ def phase_portraits() -> Figure:
             note(axes, f"step {n}", (q[-1], p[-1]), (-0.55, -0.1), look.ink)
     note(grid[0], "start", (1.0, 0.0), (1.4, 0.75))
     note(grid[0], "exact", (-0.70, 0.71), (-1.7, 1.5))
-    title(figure, "Two methods keep a spring on a closed curve; two do not")
-    return figure
+    return title(figure, "Two methods keep a spring on a closed curve; two do not")
 
 
 def _worst(method: str, z: float, n: int) -> Array:
@@ -101,8 +100,7 @@ def energy_error(z: float = ENERGY_Z, n: int = 3000) -> Figure:
     note(axes, told, (met, z * z / 4), (met * 0.75, 6e-3))
     axes.set(xscale="log", yscale="log", xlim=(1, n), ylim=(1e-4, 1e2))
     axes.set(xlabel=f"steps taken (step × ω = {z:g})", ylabel="largest energy error so far (share of E₀)")
-    title(figure, "Verlet's energy error stops growing; that of Runge-Kutta never does")
-    return figure
+    return title(figure, "Verlet's energy error stops growing; that of Runge-Kutta never does")
 
 
 def error_against_step() -> Figure:
@@ -123,8 +121,7 @@ def error_against_step() -> Figure:
     note(axes, "round-off: from here\nsmaller steps do not help", (2.44e-4, 5e-15), (7e-4, 1e-15))
     axes.set(xscale="log", yscale="log", xlim=(1e-4, 0.4), ylim=(3e-16, 2e2))
     axes.set(xlabel="step h (s), for ω = 2 rad/s", ylabel="error of position and velocity at t = 5 s (m)")
-    title(figure, "Halve the step and the error falls 2, 2, 4 or 16 times, down to round-off")
-    return figure
+    return title(figure, "Halve the step and the error falls 2, 2, 4 or 16 times, down to round-off")
 
 
 def _errors_at_end(method: str, counts: NDArray[np.int_], t_end: float) -> tuple[Array, Array]:
@@ -161,8 +158,7 @@ def stability() -> Figure:
     _name_limits(axes)
     axes.set(xlim=(0, 3.2), ylim=(0.4, 2.2))
     axes.set(xlabel="step × ω (z, no unit)", ylabel="growth of the swing per step (factor)")
-    title(figure, "Past its limit a method blows up; explicit Euler has no safe step")
-    return figure
+    return title(figure, "Past its limit a method blows up; explicit Euler has no safe step")
 
 
 def _growth(method: str, z: float) -> float:

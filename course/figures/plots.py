@@ -34,9 +34,10 @@ def draw(plot: Plot) -> Figure:
     """The figure; call it inside ``house_style``."""
     columns = min(plot.columns, len(plot.panels))
     rows = math.ceil(len(plot.panels) / columns)
-    figure, axes = new_figure(plot.height_in or 0.9 + _PANEL_IN * rows, rows, columns)
     # Each panel has its own labels here; in the lessons' figures panels share axes.
-    figure.subplots_adjust(hspace=0.55, wspace=0.28)
+    figure, axes = new_figure(
+        plot.height_in or 0.9 + _PANEL_IN * rows, rows, columns, hspace=0.55, wspace=0.28
+    )
     for ax, panel in zip(axes, plot.panels, strict=False):
         _draw_panel(ax, panel)
     for ax in axes[len(plot.panels) :]:

@@ -76,8 +76,7 @@ def standing() -> Figure:
     axes[0].set_ylabel("reaction to the speed of leaning (N m s/rad)")
     stood = before == STANDING
     share = float(np.mean(after[stood] == STANDING))
-    title(figure, f"Of the gains that work in the simulator, {100 * share:.0f} % work on the robot")
-    return figure
+    return title(figure, f"Of the gains that work in the simulator, {100 * share:.0f} % work on the robot")
 
 
 def _map(axes: Axes, kp: Array, kd: Array, what: NDArray[np.int_], heading: str) -> None:
@@ -130,8 +129,7 @@ def driven(load: float, *, feedback: bool = False) -> Array:
 
 def planned() -> Figure:
     """Kinematics: nine poses of the arm as its hand follows a straight line, and the joint angles."""
-    figure, (left, right) = new_figure(3.6, 1, 2)
-    figure.subplots_adjust(wspace=0.28)
+    figure, (left, right) = new_figure(3.6, 1, 2, wspace=0.28)
     plan = path(1.0)
     shares = np.linspace(0.0, 1.0, 9)
     poses, _, _ = plan.joints(_ARM, shares)
@@ -158,14 +156,12 @@ def planned() -> Figure:
     note(right, "bends, then\nstraightens", (float(t[most]), float(q[most, 1])), (0.44, 62))
     right.set(xlim=(0, 1), ylim=(-90, 145), yticks=range(-90, 136, 45))
     right.set(xlabel="time (s)", ylabel="joint angle (degrees)", title="The joints: curved paths")
-    title(figure, "On a straight line of the hand the joints turn back and forth")
-    return figure
+    return title(figure, "On a straight line of the hand the joints turn back and forth")
 
 
 def torques() -> Figure:
     """Inverse and forward: the shoulder's torque at three speeds; where a forgotten load takes the hand."""
-    figure, (left, right) = new_figure(3.8, 1, 2)
-    figure.subplots_adjust(wspace=0.28)
+    figure, (left, right) = new_figure(3.8, 1, 2, wspace=0.28)
     share = np.linspace(0.0, 1.0, 201)
     for duration, line, color in ((0.5, "-", "vermillion"), (1.0, "--", "blue"), (2.0, "-.", "green")):
         q, v, a = path(duration).joints(_ARM, share * duration)
@@ -196,8 +192,7 @@ def torques() -> Figure:
         word(right, x, y, text, color)
     right.set(xlim=(-0.6, 2.4), ylim=(-1.6, 1.6), aspect="equal")
     right.set(xlabel="x of the hand (m)", ylabel="y of the hand (m)", title="Forward: what happens")
-    title(figure, "Faster motion needs more torque, and a forgotten load spoils the plan")
-    return figure
+    return title(figure, "Faster motion needs more torque, and a forgotten load spoils the plan")
 
 
 def felt(bend: ArrayLike) -> Array:
@@ -211,8 +206,7 @@ def felt(bend: ArrayLike) -> Array:
 
 def wall() -> Figure:
     """The arm before a wall, bent and nearly straight, and the mass that the wall feels."""
-    figure, (left, right) = new_figure(3.4, 1, 2)
-    figure.subplots_adjust(wspace=0.28)
+    figure, (left, right) = new_figure(3.4, 1, 2, wspace=0.28)
     for degrees, color, line, lift in (
         (90, "blue", "-", 1.1),
         (45, "green", "--", 0.0),
@@ -239,8 +233,7 @@ def wall() -> Figure:
     right.set(yscale="log", xlim=(0, 150), ylim=(0.3, 1500), xticks=range(0, 151, 30))
     right.set_yticks([1, 10, 100, 1000], ["1", "10", "100", "1000"])
     right.set(xlabel="bend of the elbow (degrees)", ylabel="mass felt (kg)", title="What the wall feels")
-    title(figure, "A bent arm gives way, a straight one hits with all it is bolted to")
-    return figure
+    return title(figure, "A bent arm gives way, a straight one hits with all it is bolted to")
 
 
 # ---
@@ -316,8 +309,7 @@ def budgets() -> dict[str, dict[str, float]]:
 
 def two_questions() -> Figure:
     """Both budgets, side by side, on one logarithmic axis."""
-    figure, panels = new_figure(3.4, 1, 2, sharey=True)
-    figure.subplots_adjust(left=0.27, wspace=0.1)
+    figure, panels = new_figure(3.4, 1, 2, sharey=True, left=0.27, wspace=0.1)
     for axes, (question, found) in zip(panels, budgets().items(), strict=True):
         for row, (name, share) in enumerate(found.items()):
             _dot(axes, row, 100.0 * share, *_LOOKS[MISTAKES[name][0]])
@@ -326,8 +318,7 @@ def two_questions() -> Figure:
         axes.set_xticks([0.1, 1, 10, 100, 1000, 10_000], ["0.1", "1", "10", "100", "1000", ""])
         axes.set_xlabel("error of the answer (%)")
     panels[0].set_yticks(np.arange(len(MISTAKES)), list(MISTAKES))
-    title(figure, "Which of the same mistakes matters depends on the question")
-    return figure
+    return title(figure, "Which of the same mistakes matters depends on the question")
 
 
 def _dot(axes: Axes, row: int, percent: float, color: str, marker: str) -> None:

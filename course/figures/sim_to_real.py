@@ -80,8 +80,7 @@ def settling() -> Figure:
     axes.set(xlim=(0, 20.6), ylim=(0, 3.15), xticks=range(0, 21, 5))
     axes.text(6.1, 0.06, "circles: the gain each world prefers, on the real joint", fontsize=8.5)
     axes.set(xlabel="gain (1/s)", ylabel="time to settle (s); the run ends at 3")
-    title(figure, "What is best in a perfect simulation is worst on the real joint")
-    return figure
+    return title(figure, "What is best in a perfect simulation is worst on the real joint")
 
 
 # ---
@@ -145,8 +144,7 @@ def following() -> Figure:
     """How far each copy is off, and how fast the cart goes with and without the twin's command."""
     run, speeds = followed(), driven()
     t = _TWIN_H * np.arange(1, _TWIN_STEPS + 1)
-    figure, (upper, lower) = new_figure(5.6, 2, 1, sharex=True)
-    figure.subplots_adjust(hspace=0.26)
+    figure, (upper, lower) = new_figure(5.6, 2, 1, sharex=True, hspace=0.26)
     looks = (
         ("model", "vermillion", ":", "never corrected: digital model", (26, 0.62)),
         ("state", "blue", "--", "position corrected: digital shadow", (23, 0.075)),
@@ -168,8 +166,7 @@ def following() -> Figure:
     for axes in (upper, lower):
         axes.axvline(WEAR_AT, color=PALETTE["black"], linewidth=0.8)
     note(lower, "the wheels start to rub", (WEAR_AT, 0.8), (3, 0.65))
-    title(figure, "Measurements keep a copy close; commands restore the robot's speed")
-    return figure
+    return title(figure, "Measurements keep a copy close; commands restore the robot's speed")
 
 
 # ---
@@ -211,8 +208,7 @@ def small_steps() -> Figure:
     note(axes, "best step in\nsingle precision", lowest, (2.2e-4, 3e-2))
     axes.set(xscale="log", yscale="log", xlim=(3e-6, 0.2), ylim=(2e-5, 3))
     axes.set(xlabel="step h (s)", ylabel="error of the height after 2 s (m)")
-    title(figure, "In single precision a step can be too small: rounding takes over")
-    return figure
+    return title(figure, "In single precision a step can be too small: rounding takes over")
 
 
 def substeps() -> Figure:
@@ -228,8 +224,7 @@ def substeps() -> Figure:
     axes.set(ylim=(0, 9.6))
     axes.grid(visible=False, axis="x")
     axes.set(xlabel="substeps × iterations (number each frame)", ylabel="greatest stretch of a link (%)")
-    title(figure, "For the same work, many small steps beat many iterations")
-    return figure
+    return title(figure, "For the same work, many small steps beat many iterations")
 
 
 @cache
@@ -247,8 +242,7 @@ def _crowd(step: float) -> tuple[float, ...]:
 
 def chaos() -> Figure:
     """Two paths a billionth apart, and the statistics of two crowds integrated with different steps."""
-    figure, (left, right) = new_figure(3.7, 1, 2)
-    figure.subplots_adjust(wspace=0.26)
+    figure, (left, right) = new_figure(3.7, 1, 2, wspace=0.26)
     pair = np.radians(_LET_GO) + np.array([[0.0, 0.0], [NUDGE, 0.0]])
     t, joints, _ = swing(pair, 0.005, 3000)
     angles = from_hanging(joints)
@@ -268,5 +262,4 @@ def chaos() -> Figure:
     right.set(xlim=(-180, 180), ylim=(0, 10.4), xticks=(-90, 0, 90))
     right.set_title("Two crowds: equal statistics")
     right.set(xlabel="lower rod from hanging (degrees)", ylabel="share of the time (%)")
-    title(figure, "In chaos no path can be checked, but statistics can be")
-    return figure
+    return title(figure, "In chaos no path can be checked, but statistics can be")

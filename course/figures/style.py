@@ -125,33 +125,44 @@ def house_style() -> Iterator[None]:
         yield
 
 
-def new_figure(height_in: float, rows: int = 1, columns: int = 1, **grid: Any) -> tuple[Figure, list[Axes]]:
+def new_figure(
+    height_in: float,
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    sharex: bool = False,
+    sharey: bool = False,
+    **room: float,
+) -> tuple[Figure, list[Axes]]:
     """A figure of page width with a grid of axes, row by row, and no window behind it.
 
     The axes sit where the margins say, whatever the letters measure, so that two versions of matplotlib put
     every curve in the same place.
 
     Args:
-        grid: passed on to matplotlib's ``subplots`` (sharex, sharey, ...).
+        sharex, sharey: as for matplotlib's ``subplots``.
+        room: margins other than usual, as for its ``subplots_adjust``.
     """
     figure = Figure(figsize=(WIDTH_IN, height_in))
     FigureCanvasAgg(figure)
-    figure.subplots_adjust(
-        left=_LEFT_IN / WIDTH_IN,
-        right=1.0 - _RIGHT_IN / WIDTH_IN,
-        bottom=_BOTTOM_IN / height_in,
-        top=1.0 - (_TOP_IN + (_TITLE_IN if rows * columns > 1 else 0.0)) / height_in,
-        hspace=0.14,
-        wspace=0.08,
-    )
-    axes = figure.subplots(rows, columns, squeeze=False, **grid)
+    usual = {
+        "left": _LEFT_IN / WIDTH_IN,
+        "right": 1.0 - _RIGHT_IN / WIDTH_IN,
+        "bottom": _BOTTOM_IN / height_in,
+        "top": 1.0 - (_TOP_IN + (_TITLE_IN if rows * columns > 1 else 0.0)) / height_in,
+        "hspace": 0.14,
+        "wspace": 0.08,
+    }
+    figure.subplots_adjust(**usual | room)
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=sharex, sharey=sharey)
     return figure, list(axes.flat)
 
 
-def title(figure: Figure, finding: str) -> None:
-    """Head a figure with what it shows: a sentence, not a topic."""
+def title(figure: Figure, finding: str) -> Figure:
+    """Head a figure with what it shows, a sentence and not a topic, and give it back."""
     top = 1.0 - 0.08 / figure.get_figheight()
     figure.suptitle(finding, x=0.012, y=top, ha="left", va="top", fontsize=10.5, fontweight="bold")
+    return figure
 
 
 def word(axes: Axes, x: float, y: float, text: str, ink: str = "black", **more: Any) -> None:

@@ -22,7 +22,6 @@ def check(exercise: str, task: str | None = None, *, source: Source | None = Non
     """Run the public checks of an exercise on code from anywhere; in a workspace, record the attempt.
 
     Args:
-        exercise: its id.
         task: show the checks of this function only.
         source: what to check: the text of a module; a path, or its text, that ends in .py or .ipynb; or
             functions, classes and texts in the order of a module, to which the exercise's own imports are

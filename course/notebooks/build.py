@@ -15,8 +15,7 @@ from course.catalog.markdown import read_blocks
 from course.catalog.models import Exercise, Lesson
 from course.errors import NotFoundError
 from course.handed_in.notebook import SETUP, SOLUTION
-from course.notebooks.cells import Cell, code, document, markdown, opening
-from course.notebooks.lowering import Lowering
+from course.notebooks.cells import Cell, Lowering, code, document, markdown, opening
 from course.printable import counted, meant
 from course.reading.parts import with_tasks
 from course.scoring.judging.session import has_report
@@ -95,7 +94,6 @@ class Generated:
         kind: "lesson", "exercise", "quiz" or "sandbox".
         id: of the lesson or exercise; else the kind again.
         path: relative to the folder that notebooks go into.
-        data: the file.
     """
 
     kind: str

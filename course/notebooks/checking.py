@@ -216,11 +216,7 @@ class Run:
 
 
 class Runs:
-    """The cells that a shell runs from now on, and those that were deleted meanwhile.
-
-    Args:
-        shell: of IPython.
-    """
+    """The cells that a shell runs from now on, and those that were deleted meanwhile."""
 
     def __init__(self, shell: Any) -> None:
         self._shell = shell
@@ -458,7 +454,8 @@ def _submission(exercise: Exercise, source: Source) -> Submission:
         return _of_file(exercise, source)
     if isinstance(source, str):
         return _of_text(exercise, source.encode("utf-8", "replace"))
-    return _of_pieces(exercise, source)
+    texts = [*given(exercise), *(piece if isinstance(piece, str) else _source(piece) for piece in source)]
+    return _of_text(exercise, "\n\n\n".join(texts).encode("utf-8", "replace"))
 
 
 def _shell() -> Any:
@@ -489,12 +486,6 @@ def _of_text(exercise: Exercise, text: bytes) -> Submission:
             code="too_large",
         )
     return Submission({exercise.module: text})
-
-
-def _of_pieces(exercise: Exercise, pieces: Iterable[Any]) -> Submission:
-    """Functions and texts, below the exercise's own imports and constants."""
-    texts = [*given(exercise), *(piece if isinstance(piece, str) else _source(piece) for piece in pieces)]
-    return _of_text(exercise, "\n\n\n".join(texts).encode("utf-8", "replace"))
 
 
 def _source(piece: Any) -> str:

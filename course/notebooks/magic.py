@@ -93,9 +93,6 @@ def _told(wrong: str, act: Callable[[], T]) -> T | None:
 def report(shell: Any, exercise_id: str) -> ReportPage:
     """A report: what the functions of a notebook do on public data.
 
-    Args:
-        shell: of IPython, that runs it.
-
     Raises:
         NotFoundError: there is no such exercise, or it has nothing to show.
         UngradableError: there is nothing to run yet, or it cannot be run.

@@ -158,7 +158,7 @@ class LessonPrediction(_Opened):
 def answer_of(catalog: Catalog, lesson: Lesson, script: Script, question: Question) -> str:
     """The passage that answers a prediction, as Markdown; empty if the lesson has none."""
     from course.notebooks.build import FOLDERS
-    from course.notebooks.lowering import Lowering
+    from course.notebooks.cells import Lowering
 
     if question.answer is None:
         return ""
@@ -166,7 +166,7 @@ def answer_of(catalog: Catalog, lesson: Lesson, script: Script, question: Questi
 
 
 def _quoted(text: str) -> str:
-    from course.notebooks.lowering import escaped
+    from course.notebooks.cells import escaped
 
     return escaped(" ".join(text.split()))
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from html import escape
 
 from course.catalog.load import Catalog
-from course.notebooks.cells import Cell, code, document, markdown, opening
-from course.notebooks.lowering import escaped
+from course.notebooks.cells import Cell, code, document, escaped, markdown, opening
 from course.quizzing.bank import (
     LETTERS,
     Bank,
@@ -119,8 +118,6 @@ def _told(one: MarkedQuestion) -> list[tuple[str, str, str]]:
     told = [] if one.right else [("Your answer", one.chosen.text, one.chosen.explanation)]
     told.append(("Right", key.text, key.explanation))
     if not one.right:
-        rest = [
-            choice for choice in one.posed.choices if choice.letter not in (key.letter, one.chosen.letter)
-        ]
-        told += [(f"Not {choice.letter}", choice.text, choice.explanation) for choice in rest]
+        rest = [each for each in one.posed.choices if each.letter not in (key.letter, one.chosen.letter)]
+        told += [(f"Not {each.letter}", each.text, each.explanation) for each in rest]
     return told

@@ -11,8 +11,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from course.catalog.load import Catalog
-from course.notebooks.cells import code, document, markdown, opening
-from course.notebooks.lowering import escaped
+from course.notebooks.cells import code, document, escaped, markdown, opening
 from course.sandbox.runs.running import Run, account, run, sentences
 from course.sandbox.scene.model import Scene
 

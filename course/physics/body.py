@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from course.physics.rotation import angular_momentum, kinetic_energy
-from course.physics.state import RigidBodyState
-
-Array = NDArray[np.float64]
+from course.physics.state import Array, RigidBodyState
 
 
 class Body:

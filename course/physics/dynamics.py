@@ -21,10 +21,9 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
-
+from course.physics.state import Array
 
 _STRAIGHT = 1e-3  # sine of the elbow angle below which the hand cannot move along the arm
 

@@ -8,11 +8,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from course.physics.state import Array
 from course.physics.systems import DampedOscillator, ForcedOscillator, Oscillator, System
-
-Array = NDArray[np.float64]
 
 _COLUMNS = 10  # extrapolation columns; past ten, round-off wins
 _MAX_HALVINGS = 8

@@ -28,11 +28,10 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from course.physics.state import Array
 from course.physics.systems import System
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,11 +7,10 @@ energies of shape (...).
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from course.physics.state import Array
 from course.physics.systems import FreeFall, Kepler, Oscillator, Pendulum, System
-
-Array = NDArray[np.float64]
 
 
 def energy(system: System, q: ArrayLike, v: ArrayLike) -> Array:

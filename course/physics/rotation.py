@@ -13,9 +13,9 @@ Source: Goldstein, Poole, Safko, Classical Mechanics, 3rd edition, 2001, chapter
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from course.physics.state import Array
 
 
 def cross(a: Array, b: Array) -> Array:

@@ -22,18 +22,15 @@ from dataclasses import dataclass, field
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from course.physics.body import Body
 from course.physics.contact import Plane, Surface
-from course.physics.contact.impulses import Impulses, Motion, normal_speed, solve
+from course.physics.contact.impulses import Flags, Impulses, Motion, normal_speed, solve
 from course.physics.contact.pairs import Pairs, in_any_run
 from course.physics.integrators import State, Stepper, VelocityVerlet
 from course.physics.rotation import ByMomentum, ByQuaternion, Spin, kinetic_energy, turn, turn_back
-from course.physics.state import RigidBodyState
+from course.physics.state import Array, RigidBodyState
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 ForceLaw = Callable[[Any, Sequence[Body]], None]
 
 

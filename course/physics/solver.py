@@ -13,9 +13,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from course.physics.state import Array
 
 
 def stack_impulses(boxes: int, iterations: int) -> Array:

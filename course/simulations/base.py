@@ -10,12 +10,12 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from course.errors import UsageError
 from course.physics.simulator import step_count
+from course.physics.state import Array
 
-Array = NDArray[np.float64]
 Value = float | int | str
 
 

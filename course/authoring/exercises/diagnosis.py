@@ -204,9 +204,7 @@ def _endless(catalog: Catalog, exercise: Exercise, task: str, codes: tuple[str, 
     )
 
 
-def _expect_callable(
-    questions: ModuleType, exercise_id: str, task: str, function: Callable[..., Any]
-) -> None:
+def _expect_callable(questions: ModuleType, exercise_id: str, task: str, function: Any) -> None:
     """Each question has as many arguments as the function takes."""
     path, asked = questions_path(exercise_id), questions.QUESTIONS.get(task, ())
     calls = asked if task not in getattr(questions, "ASK", {}) else ()
@@ -451,10 +449,7 @@ def _dumped(node: Any) -> str:
 
 
 def _tried(
-    catalog: Catalog,
-    exercise: Exercise,
-    scope: str,
-    chosen: list[Wrong],
+    catalog: Catalog, exercise: Exercise, scope: str, chosen: list[Wrong]
 ) -> Iterator[tuple[str, tuple[str, ...], str]]:
     source = solution_path(catalog, exercise).read_text(encoding="utf-8")
     own, table = words(exercise.id), read_table(exercise.readme_path.parent)
@@ -481,9 +476,8 @@ def _main(said: list[str], codes: tuple[str, ...], kind: Callable[[str], str]) -
     if set(said) & set(codes):
         wrong = [code for code in said if code and code not in codes and kind(code) == "cause"]
         return wrong[0] if wrong else next(code for code in codes if code in said)
-    ranked = sorted(
-        filter(None, said), key=lambda code: ("cause", "nan", "consequence", "fact").index(kind(code))
-    )
+    ranks = ("cause", "nan", "consequence", "fact")
+    ranked = sorted(filter(None, said), key=lambda code: ranks.index(kind(code)))
     return ranked[0] if ranked else ""
 
 

@@ -154,7 +154,6 @@ def grade_sources(
     directly or through others, has the same result as for the model, and is not run again.
 
     Args:
-        sources: exercise and submission of each.
         graders: processes, at most; None for as many as are worth it.
 
     Yields:
@@ -310,8 +309,6 @@ class LocalSubmission:
     """One student's module, loaded here.
 
     Args:
-        source: text of the module.
-        seed: seed of the grading run.
         replaced: functions to put in the place of the module's own, by name.
     """
 

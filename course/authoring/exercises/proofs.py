@@ -39,7 +39,7 @@ from course.scoring.failures import ON_THE_MODEL
 from course.scoring.graders import LEFT_OUT
 from course.scoring.judging.outcomes import NOT_JUDGED
 from course.scoring.values import leaves
-from course.scoring.verdict import OURS, CheckResult, Problem, Status, Verdict, Visibility
+from course.scoring.verdict import OURS, CheckResult, Status, Verdict, Visibility
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
 #: Of an exercise of n functions: n + 1 unusual solutions that must pass, and this many wrong ones times n.
@@ -56,8 +56,6 @@ class Proof:
 
     Attributes:
         role: "stub", "solution", "accepted" or "mutant".
-        name: of the program.
-        mutant: what ``mistakes.py`` says of it.
         line: in its file, where that has more than this program.
     """
 
@@ -190,9 +188,12 @@ class Prover:
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
         """Report checks that broke instead of checking, each once, with the line that raised."""
         error = verdict.error
-        if error is not None and error.code == "check_file":
+        if error is not None and error.code == "check_file":  # which grader processes could not import
             self.broken = self.hopeless = True
-            self._findings.add(*_fault_of_file(error, self._findings.root))
+            said, root = _CHECK_FILE.fullmatch(error.message), self._findings.root
+            assert said is not None
+            line = int(said["line"]) if said["line"] else None
+            self._findings.add(root / said["file"], line, "grader", *_told(said["problem"], error.help, root))
             return True
         told = False
         for check in verdict.checks:
@@ -312,14 +313,6 @@ _RAISED = re.compile(r" \((?P<file>[^()]+), line (?P<line>\d+)\)\.?$")
 _NOT_THERE = re.compile(r"FileNotFoundError: (?P<file>\S+) is not there")
 
 
-def _fault_of_file(error: Problem, root: Path) -> tuple[Path, int | None, str, str, str]:
-    """A file that grader processes could not import, as a finding about it."""
-    said = _CHECK_FILE.fullmatch(error.message)
-    assert said is not None
-    problem, fix = _told(said["problem"], error.help, root)
-    return root / said["file"], int(said["line"]) if said["line"] else None, "grader", problem, fix
-
-
 def _told(problem: str, fix: str, root: Path) -> tuple[str, str]:
     """A problem and its fix, which are others where a file is missing in grader processes alone."""
     absent = _NOT_THERE.search(problem)
@@ -336,10 +329,8 @@ def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:
     for match in DECIMAL.finditer(words):
         if match[0] not in public:
             yield match[0]
-    numbers = (
-        one for one in leaves([check.input, check.expected, check.actual]) if type(one) in {int, float}
-    )
-    values = set(map(float, numbers))
+    shown = leaves([check.input, check.expected, check.actual])
+    values = {float(one) for one in shown if type(one) in {int, float}}
     for match in _INTEGER.finditer(words):
         if abs(int(match[0])) >= _TELLING and float(match[0]) in values:
             yield match[0]
@@ -384,10 +375,7 @@ class MutantOutcome:
 
 
 def run_mutants(
-    catalog: Catalog,
-    exercise: Exercise,
-    *,
-    on_progress: Progress | None = None,
+    catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None
 ) -> tuple[MutantOutcome, ...]:
     """Grade every wrong program of an exercise and compare with what is on record."""
     mistakes, caught = mistakes_of(catalog, exercise), caught_by(catalog, exercise)

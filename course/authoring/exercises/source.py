@@ -2,6 +2,7 @@
 
 import ast
 import copy
+import itertools
 import json
 import re
 import subprocess
@@ -64,10 +65,8 @@ def parse(path: Path) -> ast.Module:
         return ast.parse(text, filename=str(path))
     except (SyntaxError, ValueError) as error:
         line = getattr(error, "lineno", None)
-        words = getattr(error, "msg", None) or str(error)
-        raise ContentError(
-            path, line, f"this is not valid Python: {words}.", help="Correct the line."
-        ) from None
+        problem = f"this is not valid Python: {getattr(error, 'msg', None) or error}."
+        raise ContentError(path, line, problem, help="Correct the line.") from None
 
 
 def signatures(tree: ast.Module) -> dict[str, Signature]:
@@ -135,15 +134,10 @@ def quoted_numbers(tree: ast.Module) -> Iterator[tuple[int, str]]:
             texts += [*node.args, *(k.value for k in node.keywords if k.arg in {"looks_like", "advice"})]
         elif name in {"fail", "expect_true"}:
             texts += node.args
-        for text in texts:
-            yield from _decimals(text)
-
-
-def _decimals(expression: ast.expr) -> Iterator[tuple[int, str]]:
-    for node in ast.walk(expression):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            for match in DECIMAL.finditer(node.value):
-                yield node.lineno, match[0]
+        for part in itertools.chain.from_iterable(map(ast.walk, texts)):
+            if isinstance(part, ast.Constant) and isinstance(part.value, str):
+                for match in DECIMAL.finditer(part.value):
+                    yield part.lineno, match[0]
 
 
 def _without_annotations(arguments: ast.arguments) -> ast.arguments:

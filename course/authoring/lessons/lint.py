@@ -352,9 +352,7 @@ class LinkChecker:
 
 def _anchors(path: Path, *, lesson: bool) -> frozenset[str]:
     if lesson:
-        return frozenset(
-            slug(block) for block in walk_blocks(read_blocks(path)) if isinstance(block, Heading)
-        )
+        return frozenset(slug(one) for one in walk_blocks(read_blocks(path)) if isinstance(one, Heading))
     from markdown_it import MarkdownIt
 
     tokens = MarkdownIt("commonmark").enable("table").parse(read_text(path))
@@ -405,11 +403,7 @@ def audit_syllabus(catalog: Catalog, findings: Findings) -> None:
         if not (catalog.content.lessons / f"{lesson_id}.md").is_file():
             fix = f"Write {lesson_id}.md beside the syllabus, or remove the line."
             wrong(("lessons", index), f"lesson {lesson_id} has no file.", fix)
-    known = {
-        "lessons": listed,
-        "exercises": catalog.exercise_ids(),
-        "quiz": catalog.question_ids(),
-    }
+    known = {"lessons": listed, "exercises": catalog.exercise_ids(), "quiz": catalog.question_ids()}
     named: set[tuple[str, str]] = set()
     for index, objective in enumerate(catalog.syllabus.objective):
         for kind, ids in known.items():

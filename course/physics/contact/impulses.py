@@ -28,7 +28,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from course.physics.state import Array
+
 Flags = NDArray[np.bool_]
 
 _DONE = 1e-6  # the last sweep changes no velocity by more than this fraction of the target

@@ -9,15 +9,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from course.physics.body import Body
-from course.physics.contact.impulses import normal_speed
+from course.physics.contact.impulses import Flags, normal_speed
 from course.physics.integrators import falling_root
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-
+from course.physics.state import Array
 
 # ---
 # Contact as geometry: how far apart things are, in which direction, and what their surfaces are like.

@@ -6,8 +6,6 @@ and the physics engine combines those of a pair. ``gazebo_start.py``, which must
 sets the velocities at the start.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Sequence
@@ -247,11 +245,7 @@ _NOTE_START = (
     f" Velocities at the start are set by {START}, which Gazebo finds by GZ_SIM_SYSTEM_PLUGIN_PATH. "
 )
 #: The systems that Gazebo Sim loads when a world names none; a world that names one has to name them all.
-_SYSTEMS = (
-    ("physics", "Physics"),
-    ("user-commands", "UserCommands"),
-    ("scene-broadcaster", "SceneBroadcaster"),
-)
+_SYSTEMS = ("physics", "user-commands", "scene-broadcaster")
 
 
 def sdf(chosen: Chosen) -> bytes:
@@ -272,8 +266,8 @@ def sdf(chosen: Chosen) -> bytes:
     physics = ET.SubElement(world, "physics", name="fixed-step", type="ignored")
     _text(physics, "max_step_size", number(chosen.present["step"]))
     _text(physics, "real_time_factor", "1")
-    for file, name in _SYSTEMS:
-        _plugin(world, file, name)
+    for system in _SYSTEMS:
+        _plugin(world, system)
     _text(world, "gravity", _gravity(chosen))
     _add_light(world)
     for part in parts:
@@ -293,8 +287,9 @@ def start_script(world: bytes) -> bytes | None:
     return Path(__file__).with_name(START).read_bytes()
 
 
-def _plugin(parent: ET.Element, file: str, name: str) -> ET.Element:
-    return ET.SubElement(parent, "plugin", filename=f"gz-sim-{file}-system", name=f"gz::sim::systems::{name}")
+def _plugin(parent: ET.Element, system: str) -> ET.Element:
+    name = f"gz::sim::systems::{system.title().replace('-', '')}"
+    return ET.SubElement(parent, "plugin", filename=f"gz-sim-{system}-system", name=name)
 
 
 def _add_light(world: ET.Element) -> None:
@@ -319,7 +314,7 @@ def _add_assembly(world: ET.Element, chosen: Chosen, assembly: Assembly) -> None
         _add_link(model, chosen, part)
     model.extend(assembly.joints)
     if assembly.speeds:
-        plugin = _plugin(model, "python-system-loader", "PythonSystemLoader")
+        plugin = _plugin(model, "python-system-loader")
         _text(plugin, "module_name", START.removesuffix(".py"))
         _text(plugin, "joints", " ".join(assembly.speeds))
         for name, speed in assembly.speeds.items():

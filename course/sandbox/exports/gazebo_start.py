@@ -6,8 +6,6 @@ that loads this file, a system in Python for Gazebo Sim 8 (Harmonic) and later. 
 imports nothing of the course.
 """
 
-from __future__ import annotations
-
 import importlib
 from typing import Any
 

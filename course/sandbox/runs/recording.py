@@ -380,7 +380,6 @@ class Film:
     """Collects frames of one run.
 
     Args:
-        scene: the scene to film; the picture shows its view.
         width: of a frame in pixels; its height follows from the view.
     """
 
@@ -506,10 +505,8 @@ class Film:
             image.putpalette(self._palette.getpalette() or [])
             yield image
 
-    def _draw_parts(
-        self, pen: ImageDraw, parts: tuple[Part, ...], snapshot: Snapshot, *, fixed: bool
-    ) -> None:
-        places = zip(parts, snapshot.x.tolist(), snapshot.y.tolist(), snapshot.angle.tolist(), strict=True)
+    def _draw_parts(self, pen: ImageDraw, parts: tuple[Part, ...], shot: Snapshot, *, fixed: bool) -> None:
+        places = zip(parts, shot.x.tolist(), shot.y.tolist(), shot.angle.tolist(), strict=True)
         for part, x, y, angle in places:
             if part.fixed == fixed:
                 self._draw_part(pen, part, x, y, angle)

@@ -1,7 +1,5 @@
 """A run without a view: all events, and the answer to the scene's question."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -106,9 +104,7 @@ class Probes:
         """When probes read, by the settings at the first step: until then they may change."""
         given = {p.name: p.time for p in self._scene.probe if p.time is not None}
         values = values_of(self._now()) if any(isinstance(time, str) for time in given.values()) else {}
-        return {
-            name: evaluate(time, values) if isinstance(time, str) else time for name, time in given.items()
-        }
+        return {name: evaluate(at, values) if isinstance(at, str) else at for name, at in given.items()}
 
     def _first_contact(self, probe: Probe, block: Block) -> int | None:
         """The step of the block in which the probe's two met."""
@@ -175,16 +171,12 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
 
     Attributes:
         duration: simulated time, in s.
-        steps: made.
-        events: all of them, in order.
         dropped: events that were too many to keep.
-        receipt: at the end.
         momentum_before, momentum_after: along x and y in kg m/s, and angular in kg m²/s.
         momentum_least, momentum_most: along x and y, on the way.
         probes: what the scene's probes read.
         comparison: the prediction's, if the scene asks for one.
         samples: time in s, and the state (n, 6) then, with the names of its rows.
-        state_hash: of the end.
     """
 
     duration: float
@@ -216,7 +208,6 @@ def run(
     """Run a scene to its end.
 
     Args:
-        chosen: the scene with its settings.
         duration: in s; the scene's own if None.
         guess: the student's number, if one was asked for.
         every: keep a sample of all bodies this often, in s; 0 keeps none.
@@ -367,7 +358,7 @@ def account(receipt: Receipt) -> list[str]:
     lines = [
         f"Energy at the start {_joule(receipt.start)}"
         + (f", {how} since {_joule(abs(receipt.given))}" if abs(receipt.given) > 1e-9 else "")
-        + f"; now {_joule(kinetic)} of motion and {_joule(receipt.potential)} of height.",
+        + f"; now {_joule(kinetic)} of motion and {_joule(receipt.potential)} of height."
     ]
     in_rods = f", lost in rods {_joule(rods)}" if rods else ""
     lines.append(f"Lost in contacts {_joule(contacts)}, lost to friction {_joule(friction)}{in_rods}.")

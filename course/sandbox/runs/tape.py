@@ -93,10 +93,6 @@ def account_of(kept: Frame, start: float) -> tuple[Receipt, tuple[float, float, 
 class Tape:
     """Frames of a world's present run.
 
-    Args:
-        world: whose; from now on.
-        recording: what is done to it.
-
     Attributes:
         frames, times, ticks, sums: the frames, with the simulated time in s, the step and the sums of the
             account of each.

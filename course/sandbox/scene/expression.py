@@ -1,7 +1,5 @@
 """The formulas of a scene, and the texts that hold them: ``course.formulas`` with a scene's own refusals."""
 
-from __future__ import annotations
-
 import re
 import string
 from collections.abc import Iterator, Mapping
@@ -15,7 +13,6 @@ def evaluate(text: str, values: Mapping[str, float]) -> float:
 
     Args:
         text: the formula. ``name.field`` is looked up as one name, hyphens in it written as underscores.
-        values: the value of each name.
 
     Raises:
         UsageError: it is not a formula, names something unknown, or has no value (a division by zero, say).
@@ -54,8 +51,8 @@ def _refused(text: str, why: str, help: str = "Write plain arithmetic: sqrt(2 * 
 # Texts of a scene that hold numbers: ``{restitution}``, ``{speed * step:.2f}``.
 #
 # A number that a setting can change is never written out in a question or its explanation, because the text
-# would then become false. The formulas are those of ``course.sandbox.scene.expression``, and no text is ever
-# handed to ``str.format``, whose fields reach into objects.
+# would then become false. The formulas are those above, and no text is ever handed to ``str.format``, whose
+# fields reach into objects.
 
 
 #: The formats a number may have; few digits, because a text is not a table.
@@ -99,9 +96,8 @@ def _pieces(text: str) -> Iterator[tuple[str, str | None, str]]:
         raise _refused_text(text, f"has a brace without its partner ({error})") from None
     for words, formula, shape, conversion in pieces:
         if conversion or (shape and not _SHAPE.fullmatch(shape)):
-            raise _refused_text(
-                f"{formula}:{shape or conversion}", "has a format other than .2f, .3g or +.1e"
-            )
+            said = f"{formula}:{shape or conversion}"
+            raise _refused_text(said, "has a format other than .2f, .3g or +.1e")
         yield words, formula, shape or _USUAL
 
 

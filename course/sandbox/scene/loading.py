@@ -1,7 +1,5 @@
 """Scenes from files: the course's own by id, a student's by path, with parameters set."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator, Mapping
@@ -33,7 +31,6 @@ class Chosen(msgspec.Struct, frozen=True, kw_only=True):
         scene: with its parameters put in.
         parameters: the scene's own, every one.
         settings: those of ``SETTINGS`` that were given.
-        path: the file.
         own: it is not one of the course's.
     """
 
@@ -242,13 +239,11 @@ def _check_formulas(document: Document[Scene]) -> None:
 def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:
     """No settings, then each alone at either end of its range, if formulas use these names."""
     yield {}
-    for parameter in scene.parameter:
-        yield {parameter.name: parameter.low}
-        yield {parameter.name: parameter.high}
-    for name, setting in SETTINGS.items():
-        if {"gravity": "g"}.get(name, name) in named:
-            yield {name: setting.low}
-            yield {name: setting.high}
+    ranged: list[Any] = [*scene.parameter]
+    ranged += [one for one in SETTINGS.values() if {"gravity": "g"}.get(one.name, one.name) in named]
+    for one in ranged:
+        yield {one.name: one.low}
+        yield {one.name: one.high}
 
 
 def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool = False) -> Chosen:
@@ -340,11 +335,9 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
     Attributes:
         question, unit: as the scene asks, with the numbers of this run.
         guess: the student's; None if none was made.
-        theory: what the formula gives.
         simulation: what the run gave; "nan" if what was asked for did not happen.
         guess_right: the guess is close to theory or simulation, whichever is nearer; None without a guess.
         agree: theory and simulation are as close as the scene says they should be.
-        verdict: one sentence.
         why: the reasoning behind the formula, with the numbers of this run.
     """
 
@@ -375,8 +368,6 @@ def compare(
 
     Args:
         asked: the scene's question.
-        simulation: the number the run gave.
-        values: the values of the names in formula and texts.
         guess: the student's number.
 
     Raises:

@@ -6,8 +6,6 @@ file out of range is refused with its line; what a type cannot say is checked in
 ``course.sandbox.scene.rules``.
 """
 
-from __future__ import annotations
-
 import math
 import random
 from collections.abc import Iterator, Sequence
@@ -44,6 +42,9 @@ Point = tuple[Coordinate, Coordinate]
 #: The shape of a body as a scene says it, and as the engine and all views know it: a box has four corners.
 Shape = Literal["circle", "box", "polygon", "segment"]
 Form = Literal["circle", "polygon", "segment"]
+#: What a probe reads: of one body, and of several together.
+OfOne = Literal["x", "y", "vx", "vy", "speed", "angle_deg", "spin"]
+OfMany = Literal["kinetic", "momentum_x", "contacts", "contact_time", "count", "mean", "spread"]
 
 
 class Material(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -66,7 +67,6 @@ class Repeat(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """The same body several times in a row; two of them make a grid.
 
     Attributes:
-        count: how many in all.
         offset: from one to the next, in m.
     """
 
@@ -106,7 +106,6 @@ class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         jitter: each coordinate of each copy is moved by up to this, in m, drawn from the scene's seed.
         interval: copies appear one after another, this far apart, in s.
         turn_deg, about: everything above is turned by this angle about this point, velocity included.
-        wheels: it drives.
         colour: for views, as ``#rrggbb``.
     """
 
@@ -192,22 +191,7 @@ class Probe(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
 
     name: Name
-    quantity: Literal[
-        "x",
-        "y",
-        "vx",
-        "vy",
-        "speed",
-        "angle_deg",
-        "spin",
-        "kinetic",
-        "momentum_x",
-        "contacts",
-        "contact_time",
-        "count",
-        "mean",
-        "spread",
-    ]
+    quantity: Literal[OfOne, OfMany]
     of: Pattern
     other: Name | None = None
     when: Literal["start", "end", "max", "min", "at", "after"] = "end"
@@ -225,9 +209,7 @@ class Prediction(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     the names that ``theory`` may use; see ``course.sandbox.scene.expression``.
 
     Attributes:
-        question: asks for it.
         probe: what answers it.
-        unit: of the answer.
         theory: a formula for it in parameters, ``g``, ``step`` and ``body.mass`` and the like.
         why: where the formula comes from, and the usual reasoning behind a wrong guess.
         near: a guess this close to the simulation counts as right; a fraction of the answer.

@@ -1,17 +1,15 @@
 """The rules for a scene that its types cannot express: references, complete shapes, fitting ranges."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import msgspec
 
 from course.catalog.reading import Document
 from course.errors import UsageError
 from course.sandbox.scene import expression
-from course.sandbox.scene.model import Body, Probe, Scene, Shape, layout, signed_area
+from course.sandbox.scene.model import Body, OfMany, Probe, Scene, Shape, layout, signed_area
 
 # ---
 # The settings that can be changed in any running world, and their ranges.
@@ -24,8 +22,6 @@ class Setting:
     Attributes:
         low, high: the range, both included.
         notch: how much one key press or one step of a slider changes it; a factor if ``times``.
-        times: whether ``notch`` multiplies.
-        whole: whether it is a whole number.
     """
 
     name: str
@@ -121,8 +117,6 @@ _NEEDS: dict[Shape, tuple[str, ...]] = {
 }
 _SHAPE_KEYS = ("radius", "size", "points", "thickness")
 _MOST = 1000
-#: Quantities that several bodies have together.
-_OF_MANY = {"kinetic", "momentum_x", "contacts", "contact_time", "count", "mean", "spread"}
 
 
 def check_scene(document: Document[Scene]) -> None:
@@ -347,7 +341,7 @@ def _check_probe(document: Document[Scene], i: int, probe: Probe, bodies: int) -
         )
     if probe.when == "after" and probe.other is None:
         document.fail(where, "after which contact?", fix="Name the partner with `other`.")
-    if bodies > 1 and probe.quantity not in _OF_MANY:
+    if bodies > 1 and probe.quantity not in get_args(OfMany):
         document.fail((*where, "of"), f"{probe.quantity} is of one body.", fix="Name one.")
 
 

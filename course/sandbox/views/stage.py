@@ -118,7 +118,6 @@ class Stage:
     """A scene that is played.
 
     Args:
-        chosen: the scene, with the parameters that go into it.
         guess: an answer to its question that was given elsewhere.
         keep: called with each comparison that has a guess.
         clock: real time, in s.

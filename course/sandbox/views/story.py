@@ -1,7 +1,5 @@
 """The text of a view: events as they happen, and the result of the prediction."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -94,17 +92,11 @@ class Experiment:
 
     Args:
         world: before its first step.
-        chosen: its scene.
-        guess: given before, if there is one.
         keep: called with each comparison that has a guess.
     """
 
     def __init__(
-        self,
-        world: World,
-        chosen: Chosen,
-        guess: float | None,
-        keep: Callable[[Comparison], None] | None,
+        self, world: World, chosen: Chosen, guess: float | None, keep: Callable[[Comparison], None] | None
     ) -> None:
         self._world, self._chosen, self.keep = world, chosen, keep
         self._listeners = tuple(world.on_block)

@@ -1,7 +1,5 @@
 """The accounts of a running world: where energy came from, where it went, and a minute of history."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Sequence
@@ -175,7 +173,9 @@ def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[
         return []
     k, a, b = contacts.row[found], contacts.a[found], contacts.b[found]
     normal, point = contacts.normal[:, found].T, contacts.point[:, found].T
-    swap = np.array([_goes_second(parts[i], parts[j]) for i, j in zip(a.tolist(), b.tolist(), strict=True)])
+    # A sentence about the two begins with a moving body before a fixed one, then by name.
+    ranks = [(part.fixed, part.name) for part in parts]
+    swap = np.array([ranks[i] > ranks[j] for i, j in zip(a.tolist(), b.tolist(), strict=True)])
     a, b = np.where(swap, b, a), np.where(swap, a, b)
     normal = np.where(swap[:, None], -normal, normal)
     rows = np.stack([block.before[k, a], block.before[k, b], block.states[k, a, 3:], block.states[k, b, 3:]])
@@ -210,11 +210,6 @@ def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[
         events.append(Event(kind="contact", t=t, step=step, minor=minor, shared=shared, **names, **told))
     # The engine lists contacts by memory address; names make the order the same in every run.
     return sorted(events, key=lambda event: (event.step, event.a, event.b))
-
-
-def _goes_second(a: Part, b: Part) -> bool:
-    """Whether a sentence about the two begins with ``b``: a moving body before a fixed one, then by name."""
-    return (a.fixed, a.name) > (b.fixed, b.name)
 
 
 def _relative(row_a: Floats, row_b: Floats, arm_a: Floats, arm_b: Floats) -> Floats:
@@ -280,7 +275,6 @@ class Clock:
     Attributes:
         since, at: the time in s and the number of steps when the size was last changed.
         size: of a step, in s.
-        steps: made so far.
     """
 
     size: float
@@ -309,7 +303,6 @@ class Accounts:
     """The accounts of one space.
 
     Args:
-        space: whose bodies.
         gravity: in m/s².
     """
 

@@ -31,9 +31,6 @@ from course.sandbox.scene.model import Joint, Part
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int64]
 
-#: Columns of a state: a row per body.
-COLUMNS = ("x", "y", "angle", "vx", "vy", "spin")
-
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
@@ -71,9 +68,8 @@ class Block:
         times: at their ends, in s, (k,).
         before: velocities and spin at the start of each step, (k, n, 3).
         start: where the bodies were before the first of the steps, (n, 2), in m.
-        states: state at the end of each, (k, n, 6), columns as in ``COLUMNS``. Like the contacts these
-            are the engine's own memory: good until the next step, so copy what is to be kept.
-        contacts: during them.
+        states: at the end of each, (k, n, 6): x, y, angle, vx, vy, spin. Like the contacts these are the
+            engine's own memory: good until the next step, so copy what is to be kept.
     """
 
     first_step: int
@@ -147,7 +143,6 @@ class Ledger:
         """Book the losses of a block, each from the impulses of its own kind.
 
         Args:
-            block: the steps.
             step: their size, in s.
             given: the impulses of a hand, (k, n, 3), in N s and N m s.
             tied: the joints, if there are any.
@@ -208,7 +203,6 @@ class Ledger:
         """What impulses gave that acted inside the steps, (k,), in J.
 
         Args:
-            block: the steps.
             impulses: (k, n, 3), in N s and N m s.
         """
         work: Floats = ((block.before + block.states[:, :, 3:]) * impulses).sum(axis=(1, 2)) / 2
@@ -309,8 +303,6 @@ class Ties:
 _SOFT = 1e-12
 #: How often a body that is placed is moved until it fits, and how well it has to, in m.
 _TRIES, _NEAR = 80, 1e-4
-#: Ids of bodies are addresses.
-Ids: TypeAlias = NDArray[np.uint64]
 
 _STATE = (
     batch.BodyFields.POSITION
@@ -347,7 +339,6 @@ class Space:
 
     Args:
         parts: the bodies, in the order they are added.
-        joints: what holds them together.
     """
 
     def __init__(
@@ -390,14 +381,13 @@ class Space:
         return [joint for joint in self.joints if body in (joint.a, joint.b)]
 
     def _insert(self, part: Part) -> None:
-        body = (
-            pymunk.Body(body_type=pymunk.Body.STATIC) if part.fixed else pymunk.Body(part.mass, part.moment)
-        )
-        body.position = part.x, part.y
-        body.angle = part.angle
+        body = pymunk.Body(body_type=pymunk.Body.STATIC)
         if not part.fixed:
+            body = pymunk.Body(part.mass, part.moment)
             body.velocity = part.vx, part.vy
             body.angular_velocity = part.spin
+        body.position = part.x, part.y
+        body.angle = part.angle
         shape: pymunk.Shape
         match part.shape:
             case "circle":
@@ -539,14 +529,12 @@ class Space:
                 moved -= depth
         return moved
 
-    def set_material(self, *, restitution: float | None = None, friction: float | None = None) -> None:
-        """Give every movable body another restitution or friction; fixed ones keep theirs."""
+    def set_material(self, settings: Mapping[str, float]) -> None:
+        """Give every movable body the restitution and friction among ``settings``; fixed ones keep theirs."""
         for part, _, shape in self._bodies.values():
             if not part.fixed:
-                if restitution is not None:
-                    shape.elasticity = restitution
-                if friction is not None:
-                    shape.friction = friction
+                shape.elasticity = settings.get("restitution", shape.elasticity)
+                shape.friction = settings.get("friction", shape.friction)
 
     def nearest(self, x: float, y: float, reach: float) -> str | None:
         """The movable body closest to a place, if its surface is within ``reach`` of it, in m."""
@@ -591,18 +579,14 @@ class Space:
         batch.get_space_bodies(self.space, _STATE, self._buffer)
         return np.frombuffer(self._buffer.float_buf(), dtype=np.float64).reshape(-1, 6).copy()
 
-    def indices(self, ids: Ids) -> Ints:
-        """Rows of bodies, from the engine's ids."""
+    def indices(self, ids: NDArray[np.uint64]) -> Ints:
+        """Rows of bodies, from the engine's ids, which are addresses."""
         found: Ints = self._order.take(self._sorted.searchsorted(ids))
         return found
 
 
 class Recorder:
-    """Copies states and contacts out after each step; appending costs no Python per body.
-
-    Args:
-        space: whose.
-    """
+    """Copies states and contacts out after each step; appending costs no Python per body."""
 
     def __init__(self, space: Space) -> None:
         self._space = space

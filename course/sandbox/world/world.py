@@ -1,11 +1,9 @@
 """A scene that runs: fixed steps, one stream of events, and an account of energy and momentum.
 
 Views know nothing of the engine. They say how much real time has passed (``advance``), draw ``snapshot()``,
-read ``drain_events()``, ``receipt`` and ``history``, and pass on the user's actions. Each action also goes to
-``on_input``, with the tick before which it happened: all that a replay needs.
+read ``drain_events()``, ``receipt`` and ``samples()``, and pass on the user's actions. Each action also goes
+to ``on_input``, with the tick before which it happened: all that a replay needs.
 """
-
-from __future__ import annotations
 
 import hashlib
 import math
@@ -119,7 +117,6 @@ class World:
     """A running scene.
 
     Args:
-        scene: what to build.
         settings: values for ``SETTINGS``; the scene's own where left out.
         receipt: keep the account of energy. Without it no contact is told, and stepping is faster.
 
@@ -166,9 +163,7 @@ class World:
             iterations=int(self.settings["iterations"]),
             slop=scene.slop,
         )
-        self._space.set_material(
-            restitution=self.settings.get("restitution"), friction=self.settings.get("friction")
-        )
+        self._space.set_material(self.settings)
         self._space.space.gravity = self._gravity()
         self._wall()
         self._clock = Clock(self.settings["step"])
@@ -337,10 +332,8 @@ class World:
         if key == "gravity":
             self._space.space.gravity = self._gravity()
             self._accounts.recast(self._gravity())
-        elif key == "restitution":
-            self._space.set_material(restitution=amount)
-        elif key == "friction":
-            self._space.set_material(friction=amount)
+        elif key in {"restitution", "friction"}:
+            self._space.set_material({key: amount})
         elif key == "iterations":
             self._space.space.iterations = int(amount)
         elif key == "step":

@@ -5,14 +5,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.contact.models import Constraint, ContactModel, Penalty, SoftConvex, drop, erp_cfm
 from course.physics.simulator import Simulator, step_count
 from course.physics.solver import Chain, iterations_to, stack_impulses
-from course.physics.state import RigidBodyState
+from course.physics.state import Array, RigidBodyState
 from course.printable import counted
 from course.simulations.base import (
     Column,
@@ -25,9 +24,6 @@ from course.simulations.base import (
     percent,
     step,
 )
-
-Array = NDArray[np.float64]
-
 
 # ---
 # Two balls meet head on: when, how fast do they part, and what is kept?
@@ -58,11 +54,9 @@ def _run_collision(p: Mapping[str, Any]) -> Result:
     meets = math.isfinite(due)
     end = p["duration"]
     wait = due if meets else end
-    ends = (
-        -half + p["speed1"] * wait + after1 * (end - wait),
-        half + p["speed2"] * wait + after2 * (end - wait),
-    )
-    kept_theory = _kinetic(p, after1, after2)
+    left = end - wait
+    ends = (-half + p["speed1"] * wait + after1 * left, half + p["speed2"] * wait + after2 * left)
+    kept_theory = float(0.5 * p["mass1"] * after1**2 + 0.5 * p["mass2"] * after2**2)
     rows = (
         Row("time of contact", met, "s", due, "(distance - 2 r) / (v₁ - v₂)"),
         Row(
@@ -77,9 +71,13 @@ def _run_collision(p: Mapping[str, Any]) -> Result:
         ),
         Row("kinetic energy at the end", float(energy[-1]), "J", kept_theory, "what restitution leaves"),
     )
+    headline = f"Within {end:g} s the two balls do not touch; their motion does not change"
+    if not math.isnan(met):
+        kept = _kept(float(energy[0]), float(energy[-1]))
+        headline = f"Contact at {met:.4g} s conserves momentum and {kept} of the kinetic energy"
     return Result(
         rows=rows,
-        headline=_headline_collision(met, float(energy[0]), float(energy[-1]), end),
+        headline=headline,
         finding=_finding_collision(p, met, float(energy[0]), float(energy[-1])),
         columns=(
             Column.of("t", "s", record.t),
@@ -104,10 +102,6 @@ def _theory(p: Mapping[str, Any]) -> tuple[float, float, float]:
     return room / closing, v1 - impulse / p["mass1"], v2 + impulse / p["mass2"]
 
 
-def _kinetic(p: Mapping[str, Any], v1: float, v2: float) -> float:
-    return float(0.5 * p["mass1"] * v1**2 + 0.5 * p["mass2"] * v2**2)
-
-
 def _apart(met: float, t: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
     """Distance of the centres at the moment of contact, carried on from the sample before it."""
     if math.isnan(met):
@@ -115,12 +109,6 @@ def _apart(met: float, t: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
     i = max(int(np.searchsorted(t, met, side="left")) - 1, 0)
     places = x[i] + v[i] * (met - t[i])
     return float(places[1] - places[0])
-
-
-def _headline_collision(met: float, before: float, after: float, seconds: float) -> str:
-    if math.isnan(met):
-        return f"Within {seconds:g} s the two balls do not touch; their motion does not change"
-    return f"Contact at {met:.4g} s conserves momentum and {_kept(before, after)} of the kinetic energy"
 
 
 def _kept(before: float, after: float) -> str:
@@ -136,16 +124,11 @@ def _finding_collision(p: Mapping[str, Any], met: float, before: float, after: f
     centres = p["distance"] / (p["speed1"] - p["speed2"])
     kept = _kept(before, after)
     heat = {"all": "", "none": ", which becomes heat"}.get(kept, "; the rest becomes heat")
-    passing = (
-        f" Points without size would have passed through each other at {centres:.4g} s."
-        if p["radius"] > 0
-        else ""
-    )
+    passing = f" Points without size would have passed through each other at {centres:.4g} s."
     return (
         f"The surfaces touch at {met:.4g} s, when the centres are still {2 * p['radius']:g} m apart."
-        f"{passing} "
-        f"The impact conserves momentum, whatever the restitution, and {kept} of the kinetic energy"
-        f"{heat}."
+        f"{passing * (p['radius'] > 0)} The impact conserves momentum, whatever the restitution, and {kept} "
+        f"of the kinetic energy{heat}."
     )
 
 
@@ -183,7 +166,11 @@ def _run_contact_models(p: Mapping[str, Any]) -> Result:
     h, g, e, erp = p["step"], p["gravity"], p["restitution"], p["erp"]
     phases = (np.arange(_PHASES) + 0.5) / _PHASES
     rebound, kept = (
-        {name: rebounds(model, p["height"], phases, h, g) for name, model in _models(each, erp).items()}
+        {
+            "none": rebounds(Constraint(each), p["height"], phases, h, g),
+            "erp": rebounds(Constraint(each, erp=erp), p["height"], phases, h, g),
+            "split": rebounds(Constraint(each, erp=erp, split=True), p["height"], phases, h, g),
+        }
         for each in (e, 1.0)
     )
     thrown = _out_of_an_overlap(p)
@@ -215,14 +202,6 @@ def _run_contact_models(p: Mapping[str, Any]) -> Result:
     )
 
 
-def _models(e: float, erp: float) -> dict[str, Constraint]:
-    return {
-        "none": Constraint(e),
-        "erp": Constraint(e, erp=erp),
-        "split": Constraint(e, erp=erp, split=True),
-    }
-
-
 def _at_rest(p: Mapping[str, Any]) -> tuple[Row, ...]:
     """How deep a ball of 1 kg lies in the floor after a second, m."""
     h, g, k = p["step"], p["gravity"], p["stiffness"]
@@ -247,12 +226,12 @@ def _at_rest(p: Mapping[str, Any]) -> tuple[Row, ...]:
 def _out_of_an_overlap(p: Mapping[str, Any]) -> tuple[Row, ...]:
     """How high a ball that begins inside the floor is thrown by the correction, m."""
     h, g = p["step"], p["gravity"]
-    rows = []
+    found = []
     for name, split in (("in the velocity", False), ("split impulse", True)):
         gaps, _ = drop(Constraint(erp=p["erp"], split=split), -p["overlap"], 0.0, h, math.ceil(1.0 / h), g)
         hop = max(0.0, float(np.max(gaps)))
-        rows.append(Row(f"hop out of the overlap, ERP {name}", hop, "m", 0.0, "nothing pushed it"))
-    return tuple(rows)
+        found.append(Row(f"hop out of the overlap, ERP {name}", hop, "m", 0.0, "nothing pushed it"))
+    return tuple(found)
 
 
 def _of_bounces(rebound: Mapping[str, Array], kept: Mapping[str, Array], e: float) -> tuple[Row, ...]:

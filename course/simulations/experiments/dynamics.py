@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from course.physics.body import Body
 from course.physics.contact import Surface
@@ -13,7 +13,7 @@ from course.physics.dynamics import DrivenArm, HandPath, PassiveArm, TwoLinkArm
 from course.physics.integrators import RK4, STEPPERS, SemiImplicitEuler, State, trajectory
 from course.physics.invariants import energy, relative_change
 from course.physics.simulator import Simulator, step_count
-from course.physics.state import RigidBodyState
+from course.physics.state import Array, RigidBodyState
 from course.physics.systems import Oscillator
 from course.printable import counted
 from course.simulations.base import (
@@ -28,9 +28,6 @@ from course.simulations.base import (
     percent,
     step,
 )
-
-Array = NDArray[np.float64]
-
 
 # ---
 # An arm of two links: plan a path (kinematics), find the torques (inverse), let them act (forward).
@@ -89,15 +86,10 @@ def _kinematic_rows(p: Mapping[str, Any], arm: TwoLinkArm, path: HandPath, plann
     aside = np.abs((hand - path.start) @ np.array([-line[1], line[0]])) / length
     # The joints decide, not the formula: differences of the hand they make.
     fastest = float(np.max(np.linalg.norm(np.diff(hand, axis=0), axis=-1))) / p["step"]
+    due = 1.875 * length / p["duration"]
     return (
         Row("kinematic: hand off the straight line, at most", float(aside.max()), "m", 0.0, "the plan"),
-        Row(
-            "kinematic: greatest speed of the hand",
-            fastest,
-            "m/s",
-            1.875 * length / p["duration"],
-            "15/8 d / T",
-        ),
+        Row("kinematic: greatest speed of the hand", fastest, "m/s", due, "15/8 d / T"),
     )
 
 
@@ -107,15 +99,10 @@ def _inverse_rows(arm: TwoLinkArm, q: Array, torques: Array) -> tuple[Row, Row]:
     lever2 = arm.length1 * np.cos(q[0]) + arm.centre2 * np.cos(q[0] + q[1])
     shoulder = float(arm.g * (arm.mass1 * lever1 + arm.mass2 * lever2))
     elbow = float(arm.g * arm.mass2 * arm.centre2 * np.cos(q[0] + q[1]))
+    first, second = torques[0].tolist()
     return (
-        Row(
-            "inverse: shoulder torque at the start",
-            float(torques[0, 0]),
-            "N m",
-            shoulder,
-            "weights times levers",
-        ),
-        Row("inverse: elbow torque at the start", float(torques[0, 1]), "N m", elbow, "weight times lever"),
+        Row("inverse: shoulder torque at the start", first, "N m", shoulder, "weights times levers"),
+        Row("inverse: elbow torque at the start", second, "N m", elbow, "weight times lever"),
     )
 
 
@@ -205,6 +192,9 @@ def _run_chaos(p: Mapping[str, Any]) -> Result:
     drift = float(np.max(np.abs(relative_change(_PENDULUM.energy(q[:, 0], v[:, 0]) + _OFFSET))))
     coarse, fine = _crowd(first, second, h, n)
     _refuse_runaway(h, drift, coarse, fine)
+    later = f"more than 1 rad after {digits(large)} s"
+    if math.isnan(large):
+        later = f"still close after {p['duration']:g} s"
     rows = (
         Row("separation passes 1e-3 rad", small, "s"),
         Row("separation passes 1 rad", large, "s"),
@@ -215,7 +205,7 @@ def _run_chaos(p: Mapping[str, Any]) -> Result:
     )
     return Result(
         rows=rows,
-        headline=_headline_chaos(p, large),
+        headline=f"{p['nudge']:.1g} rad apart at the start, {later}",
         finding=_finding_chaos(p, small, large, coarse, fine),
         columns=(
             Column.of("t", "s", t),
@@ -271,12 +261,6 @@ def _crowd(first: float, second: float, h: float, n: int) -> tuple[float, float]
         _, _, v = swing(starts, h * longer, n // longer)
         means.append(float(np.mean(0.5 * v[n // longer // 2 :, :, 0] ** 2)))
     return means[0], means[1]
-
-
-def _headline_chaos(p: Mapping[str, Any], large: float) -> str:
-    if math.isnan(large):
-        return f"{p['nudge']:.1g} rad apart at the start, still close after {p['duration']:g} s"
-    return f"{p['nudge']:.1g} rad apart at the start, more than 1 rad after {digits(large)} s"
 
 
 def _finding_chaos(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
@@ -461,7 +445,9 @@ def _run_integrators(p: Mapping[str, Any]) -> Result:
     ]
     return Result(
         rows=tuple(rows),
-        headline=_headline_integrators(worst, w * h),
+        headline="From h ω = 2 on even the symplectic methods blow up"
+        if w * h >= 2.0 or worst["velocity_verlet"] > 1.0
+        else "Explicit Euler's energy keeps growing; the symplectic methods' does not",
         finding=_finding_integrators(p, rows, worst),
         columns=(
             Column.of("t", "s", t),
@@ -484,12 +470,6 @@ def _energy_theory(p: Mapping[str, Any], z: float, n: int) -> dict[str, tuple[fl
         "velocity_verlet": (z * z / 4 if plain else None, "bound z² / 4"),
         "rk4": (n * z**6 / 72 if z < 0.3 and n * z**6 < 1 else None, "n z⁶ / 72"),
     }
-
-
-def _headline_integrators(worst: Mapping[str, float], z: float) -> str:
-    if z >= 2.0 or worst["velocity_verlet"] > 1.0:
-        return "From h ω = 2 on even the symplectic methods blow up"
-    return "Explicit Euler's energy keeps growing; the symplectic methods' does not"
 
 
 def _finding_integrators(p: Mapping[str, Any], rows: list[Row], worst: Mapping[str, float]) -> str:

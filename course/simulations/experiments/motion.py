@@ -5,14 +5,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.integrators import STEPPERS, State, first_crossing, hermite, trajectory
 from course.physics.rotation import ROTATION_STEPPERS, Spin, angular_momentum, kinetic_energy, rotate
 from course.physics.simulator import Recording, Simulator, step_count
-from course.physics.state import RigidBodyState
+from course.physics.state import Array, RigidBodyState
 from course.physics.systems import FreeFall
 from course.simulations.base import (
     METHOD,
@@ -28,9 +27,6 @@ from course.simulations.base import (
     step,
     times,
 )
-
-Array = NDArray[np.float64]
-
 
 # ---
 # A ball is let go: when does it land, and what does each method make of the simplest motion there is?
@@ -57,9 +53,12 @@ def _run_free_fall(p: Mapping[str, Any]) -> Result:
         if math.isfinite(landed)
         else f"The ball is {still} after {p['duration']:g} s; it would land after {due:.4g} s."
     )
+    start = f"Down after {digits(landed, 4)} s"
+    if not math.isfinite(landed):
+        start = f"{still.capitalize()} at {p['duration']:g} s"
     return Result(
         rows=rows,
-        headline=_headline_free_fall(landed, bias, f"{still.capitalize()} at {p['duration']:g} s"),
+        headline=f"{start}; the two Eulers miss by {digits(bias)} m, one each way",
         finding=f"{when} Under constant gravity Verlet and Runge-Kutta are exact. Semi-implicit Euler moves "
         f"with a velocity that is half a step ahead, so it is too low by g h t / 2, here {digits(bias)} "
         "m, and explicit Euler is too high by the same amount: the sign shows which velocity an engine moves "
@@ -71,11 +70,6 @@ def _run_free_fall(p: Mapping[str, Any]) -> Result:
             *(Column.of(f"error_{method}", "m", off) for method, (_, off) in falls.items()),
         ),
     )
-
-
-def _headline_free_fall(landed: float, bias: float, still: str) -> str:
-    start = f"Down after {digits(landed, 4)} s" if math.isfinite(landed) else still
-    return f"{start}; the two Eulers miss by {digits(bias)} m, one each way"
 
 
 def _fall(p: Mapping[str, Any], method: str) -> tuple[np.ndarray, np.ndarray]:
@@ -183,29 +177,23 @@ def _apex_rows(p: Mapping[str, Any], record: Recording) -> tuple[Row, Row, Row]:
         s = (when - t[i]) / h
         top = float(hermite(s, z[i], z[i + 1], h * w[i], h * w[i + 1]))
         out = float(hermite(s, x[i], x[i + 1], h * u[i], h * u[i + 1]))
-    reached = due <= p["duration"]
+    due = due if due <= p["duration"] else math.nan
     return (
-        Row("time of the highest point", when, "s", due if reached else math.nan, "v_z / g"),
-        Row(
-            "greatest height",
-            top,
-            "m",
-            p["height"] + up * due / 2 if reached else math.nan,
-            "z₀ + v_z² / (2 g)",
-        ),
-        Row("distance there", out, "m", p["speed_x"] * due if reached else math.nan, "v_x v_z / g"),
+        Row("time of the highest point", when, "s", due, "v_z / g"),
+        Row("greatest height", top, "m", p["height"] + up * due / 2, "z₀ + v_z² / (2 g)"),
+        Row("distance there", out, "m", p["speed_x"] * due, "v_x v_z / g"),
     )
 
 
 def _landing_rows(p: Mapping[str, Any], record: Recording) -> tuple[Row, Row]:
     due = _flight_time(p)
-    reached = due <= p["duration"]
+    due = due if due <= p["duration"] else math.nan
     landed = float(record.ground_time[0])
     # A stone that is on the ground at the start stays there.
     far = float(record.position[-1, 0, 0]) if landed > 0 else landed
     return (
-        Row("time of landing", landed, "s", due if reached else math.nan, "(v_z + √(v_z² + 2 g z₀)) / g"),
-        Row("distance of landing", far, "m", p["speed_x"] * due if reached else math.nan, "v_x times that"),
+        Row("time of landing", landed, "s", due, "(v_z + √(v_z² + 2 g z₀)) / g"),
+        Row("distance of landing", far, "m", p["speed_x"] * due, "v_x times that"),
     )
 
 
@@ -292,13 +280,14 @@ def _run_rotation(p: Mapping[str, Any]) -> Result:
     w = runs["split"][1]
     t = p["step"] * np.arange(n + 1)
     flips = int(np.count_nonzero(np.diff(np.sign(w[w[:, 1] != 0, 1]))))
+    momentum = angular_momentum(inertia, *runs["split"])
+    lost = float(np.max(np.linalg.norm(momentum - momentum[0], axis=-1)) / np.linalg.norm(momentum[0]))
     rows = (
         *_energy_rows(drifts, {name: q for name, (q, _) in runs.items()}),
-        Row("angular momentum lost, split rotations", _momentum_drift(inertia, *runs["split"]), "1", 0.0,
-            "no torque, share of it"),
+        Row("angular momentum lost, split rotations", lost, "1", 0.0, "no torque, share of it"),
         *_growth(p, inertia, t, w),
         Row("times it turned over", flips, "1"),
-    )  # fmt: skip
+    )
     return Result(
         rows=rows,
         headline=_headline_rotation(p, flips, float(drifts["explicit_euler"][-1])),
@@ -321,11 +310,6 @@ def _energy_rows(drifts: Mapping[str, Array], orientations: Mapping[str, Array])
         for name, q in orientations.items()
     ]
     return rows
-
-
-def _momentum_drift(inertia: Array, q: Array, w: Array) -> float:
-    momentum = angular_momentum(inertia, q, w)
-    return float(np.max(np.linalg.norm(momentum - momentum[0], axis=-1)) / np.linalg.norm(momentum[0]))
 
 
 def _growth(p: Mapping[str, Any], inertia: Array, t: Array, w: Array) -> list[Row]:

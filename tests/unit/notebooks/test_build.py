@@ -18,7 +18,7 @@ from course.catalog.markdown import read_blocks
 from course.errors import NotFoundError
 from course.handed_in.notebook import notebook_source
 from course.notebooks.build import FOLDERS, WORKSPACE, exercise_cells, generate, pieces
-from course.notebooks.lowering import Lowering
+from course.notebooks.cells import Lowering
 from course.notebooks.quiz import SEED, marked
 from course.quizzing.bank import Bank
 

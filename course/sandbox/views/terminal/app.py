@@ -1,7 +1,5 @@
 """The program behind the view in a terminal: what keys and the mouse do, and one frame after the other."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from time import perf_counter
@@ -61,7 +59,6 @@ class SandboxApp(FullScreenApp):
 
     Args:
         stage: what is played; None to begin with the gallery.
-        desk: what may be asked of the program around this.
         clock: real time, in s.
     """
 
@@ -77,16 +74,16 @@ class SandboxApp(FullScreenApp):
         Binding("ctrl+c,ctrl+q", "quit", priority=True, show=False),
         Binding("q", "quit", show=False),
         Binding("space", "pause", show=False),
-        Binding("full_stop", "step('picture')", show=False),
-        Binding("comma", "step('back')", show=False),
+        Binding("full_stop", "stage('step', 'picture')", show=False),
+        Binding("comma", "stage('step', 'back')", show=False),
         Binding("less_than_sign", "jump(-0.5)", show=False),
         Binding("greater_than_sign", "jump(0.5)", show=False),
-        Binding("colon", "step('solver')", show=False),
-        Binding("x", "step('contact')", show=False),
-        Binding("j", "backwards", show=False),
+        Binding("colon", "stage('step', 'solver')", show=False),
+        Binding("x", "stage('step', 'contact')", show=False),
+        Binding("j", "stage('play_back', -1)", show=False),
         Binding("k", "now", show=False),
-        Binding("u,ctrl+z", "undo", show=False),
-        Binding("U,ctrl+y", "redo", show=False),
+        Binding("u,ctrl+z", "stage('undo')", show=False),
+        Binding("U,ctrl+y", "stage('redo')", show=False),
         Binding("v", "aim", show=False),
         Binding("y", "near('copy')", show=False),
         Binding("delete,backspace", "near('remove')", show=False),
@@ -244,9 +241,8 @@ class SandboxApp(FullScreenApp):
     def _draw(self, now: float) -> None:
         width, height = self.canvas.size
         if width and height:
-            self.canvas.show(
-                self.sight.draw(width, height, now, pointer=self.pointer.shown, aim=self.pointer.aim)
-            )
+            hand = self.pointer
+            self.canvas.show(self.sight.draw(width, height, now, pointer=hand.shown, aim=hand.aim))
         self.head.show([head(self.world, self.stage.t, self._state(), self.stage.pace, self._room.width)])
 
     def _state(self) -> str:
@@ -393,11 +389,7 @@ class SandboxApp(FullScreenApp):
             wanted="name and number, for example: angle 45",
             below="Enter: change it   Escape: back",
         )
-        self.push_screen(overlay, self._changed)
-
-    def _changed(self, says: str | None) -> None:
-        if says:
-            self.say(says)
+        self.push_screen(overlay, lambda says: self.say(says) if says else None)
 
     def _change(self, line: str, near: str | None) -> str:
         name, _, text = line.replace("=", " ").strip().rpartition(" ")
@@ -421,10 +413,8 @@ class SandboxApp(FullScreenApp):
         return f"{name}: {value:g}"
 
     def action_help(self) -> None:
-        wheels = "left" in self.world.settings
-        self.push_screen(
-            PageOverlay("Keys, and this scene", help_pages(self.stage.chosen.scene, wheels=wheels))
-        )
+        pages = help_pages(self.stage.chosen.scene, wheels="left" in self.world.settings)
+        self.push_screen(PageOverlay("Keys, and this scene", pages))
 
     def action_events(self) -> None:
         page = self._lines or ["Nothing happened yet."]
@@ -437,17 +427,14 @@ class SandboxApp(FullScreenApp):
         stage.run(on=stage.world.paused if stage.at is None else not stage.way)
         self.renew()
 
-    def action_step(self, kind: str) -> None:
-        """A picture on or back, to the next contact, or one step of the solver; and pause."""
-        self._attempt(lambda: self.stage.step(kind))
+    def action_stage(self, what: str, *given: Any) -> None:
+        """What a stage does by itself, by the name of its method."""
+        self._attempt(lambda: getattr(self.stage, what)(*given))
         self.renew()
 
     def action_jump(self, seconds: float) -> None:
         self._attempt(lambda: self.stage.look(self.stage.t + seconds))
         self.renew()
-
-    def action_backwards(self) -> None:
-        self._attempt(lambda: self.stage.play_back(-1))
 
     def action_now(self) -> None:
         """Back to now, or stop what is being made."""
@@ -457,12 +444,6 @@ class SandboxApp(FullScreenApp):
             self._film.stopped = True
         self.stage.present()
         self.renew()
-
-    def action_undo(self) -> None:
-        self._attempt(self.stage.undo)
-
-    def action_redo(self) -> None:
-        self._attempt(self.stage.redo)
 
     def action_reset(self) -> None:
         """Begin again; settings stay."""

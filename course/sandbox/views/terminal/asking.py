@@ -1,7 +1,5 @@
 """Boxes over the picture: the question before a run, the numbers after it, the keys, the events."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
@@ -39,8 +37,6 @@ class LineOverlay(Overlay[Any]):
     Args:
         take: makes the answer of a line; raises a CourseError if that cannot be done.
         wanted: what to type, in the empty line.
-        below: its keys.
-        calm: nothing blinks.
     """
 
     def __init__(
@@ -84,7 +80,6 @@ class Gallery(Overlay[str]):
     """Every scene, and how the one under the cursor moves. Dismissed with its id.
 
     Args:
-        played: ids of those that were played.
         current: id of the one that is played now.
     """
 

@@ -205,7 +205,6 @@ class Sight:
     """Draws a stage into the room that there is.
 
     Attributes:
-        camera: of the last frame.
         names: label every body.
         trace: the body whose path is drawn.
         ghost: draw the run before as well.
@@ -336,6 +335,5 @@ class Sight:
 
     def usual(self, key: str) -> float:
         """The value that most moving bodies have, for a setting that each has of its own."""
-        return float(
-            median([getattr(part, key) for part in self._stage.world.parts if not part.fixed] or [0.5])
-        )
+        values = [getattr(part, key) for part in self._stage.world.parts if not part.fixed]
+        return float(median(values or [0.5]))

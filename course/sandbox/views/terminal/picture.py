@@ -318,8 +318,7 @@ class Picture:
             pixels[stamp.where] = pixels[stamp.where] * (1 - cover) + self._paints[stamp.part] * cover
 
     def _line(self, pixels: Floats, ends: Sequence[float] | Floats, paint: Floats) -> None:
-        where = self._along(ends)
-        pixels[where] = paint
+        pixels[self._along(ends)] = paint
 
     def _along(self, ends: Sequence[float] | Floats) -> NDArray[np.int64]:
         """The pixels of a line in the world, as indices into the flattened picture."""

@@ -1,7 +1,5 @@
 """The view in a terminal: half blocks, a mouse or keys, and the accounts beside the picture."""
 
-from __future__ import annotations
-
 import os
 import sys
 
@@ -15,7 +13,6 @@ def play(chosen: Chosen | None, desk: Desk | None = None, *, guess: float | None
 
     Args:
         chosen: the scene with the parameters that go into it; None to begin with the gallery.
-        desk: what may be asked of the program around it.
         guess: an answer to the scene's question.
 
     Returns:

@@ -1,7 +1,5 @@
 """The panel beside the picture: numbers, small curves and lines of text, as plain pieces."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence
@@ -160,11 +158,7 @@ def keys_line(width: int, *, paused: bool, past: bool, compared: bool = False) -
 
 
 def panel(
-    world: World,
-    parameters: Sequence[tuple[str, str]],
-    width: int,
-    height: int,
-    past: Frame | None = None,
+    world: World, parameters: Sequence[tuple[str, str]], width: int, height: int, past: Frame | None = None
 ) -> list[Line]:
     """Energy, momentum and settings, for a column beside the picture.
 

@@ -3,8 +3,6 @@
 The state lives here, so a page can be reloaded at any time. Time passes only while the page is visible.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import functools
@@ -143,16 +141,13 @@ class Allowance:
         return True
 
 
-def past(stage: Stage, most: int = 900) -> bytes:
-    """The past, for plots in a page that opened later.
+def past(stage: Stage) -> bytes:
+    """The past, for plots in a page that opened later: fifteen seconds, at 60 rows a second.
 
     3, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
     and py. A first number of 2 says that these rows come after what was sent before.
-
-    Args:
-        most: rows at most; the last ones, about 60 of them a second.
     """
-    return _rows(3.0, stage.world.samples()[-most:])
+    return _rows(3.0, stage.world.samples()[-900:])
 
 
 def _rows(kind: float, rows: list[list[float]]) -> bytes:
@@ -249,11 +244,9 @@ class Session:
 
     Args:
         stage: what is played; the first scene, with the gallery open, if there is none.
-        desk: what may be asked of the program around it.
         clock: real time in s.
 
     Attributes:
-        stage: what is played.
         gallery: pages open with the gallery.
     """
 

@@ -3,8 +3,6 @@
 It needs the packages of the extra ``web``: whoever imports it has asked for them.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import hmac
@@ -47,7 +45,6 @@ def play(
 
     Args:
         chosen: the scene with the parameters that go into it; None to begin with the gallery.
-        desk: what the page may ask of the program around it.
         port: 0 for any that is free.
         open_browser: show the page; else only say where it is.
         say: takes lines for the user.
@@ -70,13 +67,15 @@ def play(
         failures.append(error)
         server.should_exit = True
 
+    def ready() -> None:
+        say(f"The world is at {address}")
+        invite(address, say, show=open_browser)
+
     with contextlib.closing(_listener(port)) as listener:
         number = listener.getsockname()[1]
         token = secrets.token_urlsafe(24)
         address = f"http://{_LOOPBACK}:{number}/{token}/"
-        app = make_app(
-            session, number, token, ready=lambda: _invite(address, say, show=open_browser), failed=failed
-        )
+        app = make_app(session, number, token, ready=ready, failed=failed)
         server = uvicorn.Server(_configured(app))
         with contextlib.suppress(KeyboardInterrupt):
             server.run(sockets=[listener])
@@ -102,11 +101,6 @@ def _configured(app: ASGIApp) -> uvicorn.Config:
         proxy_headers=False,
         server_header=False,
     )
-
-
-def _invite(address: str, say: Callable[[str], None], *, show: bool) -> None:
-    say(f"The world is at {address}")
-    invite(address, say, show=show)
 
 
 def _listener(port: int) -> socket.socket:
@@ -184,7 +178,6 @@ class Guard:
     """Lets only requests through that a page of this server can have made.
 
     Args:
-        app: what it stands in front of.
         port: of the server.
         token: first part of every path.
     """
@@ -259,8 +252,6 @@ def make_app(
     """The whole server of one world.
 
     Args:
-        session: the world.
-        port: where it listens.
         token: what the address must contain.
         ready: called once the world runs.
         failed: called if it cannot go on.

@@ -153,10 +153,14 @@ def write_autograder(
 ) -> Written:
     """Write the zip.
 
-    Hidden inputs follow from the seed together with the submission: equal files meet equal inputs. Each
-    check has ``timeout`` seconds of CPU time. Exercises that were ``asked`` for by name are reported where
-    they are missing. MissingCapabilityError: this installation has no hidden graders or no model
-    solutions, or the file cannot be written.
+    Args:
+        seed: of the hidden inputs, together with the submission: equal files meet equal inputs.
+        timeout: seconds of CPU time per check.
+        asked: the exercises were named, so a missing one is reported.
+
+    Raises:
+        MissingCapabilityError: this installation has no hidden graders or no model solutions, or the file
+            cannot be written.
     """
     catalog.content.instructors()
     ids = [exercise.id for exercise in exercises]

@@ -81,11 +81,12 @@ def served(source: IO[bytes]) -> Iterator[bytes]:
 
 
 class Servant:
-    """A process that reads strangers' files; started when it is first needed, and again after one killed
-    it.
+    """A process that reads strangers' files; started when it is first needed, and again after one killed it.
 
-    Its program writes a frame when it is ready, then answers each frame with one, or is killed after
-    ``wall_s``.
+    Args:
+        module: its program: it writes a frame when it is ready, then answers each frame with one.
+        arguments: of that program.
+        wall_s: seconds after which it is killed over a question.
     """
 
     def __init__(self, module: str, *arguments: str, wall_s: float) -> None:
@@ -94,7 +95,11 @@ class Servant:
         self._process: subprocess.Popen[bytes] | None = None
 
     def ask(self, question: Any, most: int | None = None) -> bytes | None:
-        """Its answer; None if it died over the question, took too long, or says more than ``most`` bytes."""
+        """Its answer; None if it died over the question, took too long, or says more than ``most`` bytes.
+
+        Raises:
+            InternalError: it does not start.
+        """
         process = self._process or self._start()
         assert process.stdin is not None
         assert process.stdout is not None

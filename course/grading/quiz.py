@@ -47,7 +47,12 @@ _Records = Annotated[tuple[_Record, ...], msgspec.Meta(max_length=MAX_RECORDS)]
 
 @dataclass(frozen=True, slots=True)
 class QuizScore:
-    """The attempt that counts, how many were handed in, and how many of these had an earlier one's seed."""
+    """The attempt that counts.
+
+    Attributes:
+        attempts: how many were handed in.
+        repeated: how many of them did not count because an earlier one had the same seed.
+    """
 
     result: Result
     seed: int
@@ -58,8 +63,12 @@ class QuizScore:
 def score_record(bank: Bank, record: object) -> QuizScore | None:
     """Score the attempts of one student again; None if there are none.
 
-    The record is the value of "quiz" in ``submission.json``, unchecked; it may be anything. An
-    UngradableError says which attempt is wrong, and how.
+    Args:
+        bank: the questions of the course that grades.
+        record: the value of "quiz" in ``submission.json``, unchecked; it may be anything.
+
+    Raises:
+        UngradableError: ``quiz_record_inconsistent``; the message says which attempt and what is wrong.
     """
     # Words in place of a record are the reason why there is none.
     fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)

@@ -62,8 +62,12 @@ _DOCUMENTED = (ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
 class Prints(msgspec.Struct, frozen=True):
-    """Fingerprints of one source: by hash, the lines it was seen on, as (first, last) pairs from 1 on; and a
-    digest of all nodes, which is equal for sources that differ in names and layout only."""
+    """Fingerprints of one source.
+
+    Attributes:
+        marks: hash -> the lines it was seen on, as (first, last) pairs, 1 first.
+        whole: digest of the whole sequence of nodes; equal for sources that differ in names and layout only.
+    """
 
     marks: dict[int, tuple[tuple[int, int], ...]]
     whole: str
@@ -181,7 +185,12 @@ MAX_PAIRS = 200
 
 @dataclass(frozen=True)
 class Document:
-    """One source that is compared. The course's own code is compared with, but never reported as a copy."""
+    """One source that is compared.
+
+    Attributes:
+        label: the student, or the name of the course's own file.
+        own: the course's own code: compared with, but never reported as a copy.
+    """
 
     label: str
     source: str
@@ -191,9 +200,13 @@ class Document:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two documents of one exercise: how much of the smaller one, by weight, the other has too; the lines
-    of the first and of the second that correspond, as (first, last); and how many of the first are in
-    them."""
+    """Two documents of one exercise.
+
+    Attributes:
+        share: how much of the smaller one, by weight, the other has too; 1 for all of it.
+        passages: lines of the first and of the second that correspond, as (first, last).
+        lines: of the first one in such passages.
+    """
 
     exercise: str
     first: Document
@@ -205,8 +218,12 @@ class Pair:
 
 @dataclass(frozen=True)
 class Group:
-    """Three or more submissions of one exercise that similar pairs link, each with another, not with all;
-    ``share`` is that of the weakest pair."""
+    """Three or more submissions of one exercise that similar pairs link.
+
+    Attributes:
+        members: the students, by name; each is in a pair with another, not with all.
+        share: of the weakest pair among them.
+    """
 
     exercise: str
     members: tuple[str, ...]
@@ -215,9 +232,14 @@ class Group:
 
 @dataclass
 class Similar:
-    """The result of a comparison: at most ``MAX_PAIRS`` pairs, the most alike first; groups from all
-    pairs, the largest first; and "student exercise" of each file that is not Python, or is too long to
-    compare."""
+    """The result of a comparison.
+
+    Attributes:
+        pairs: the most alike first, at most ``MAX_PAIRS``.
+        groups: the largest first, made from all pairs.
+        unreadable: "student exercise" of each file that is not Python, or is too long to compare.
+        left_out: pairs beyond ``MAX_PAIRS``.
+    """
 
     pairs: list[Pair] = field(default_factory=list)
     groups: list[Group] = field(default_factory=list)
@@ -227,9 +249,15 @@ class Similar:
 
 
 def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, at_least: float) -> Similar:
-    """Compare all submissions of each exercise, or of some, with each other and with the course's own
-    code, and report shares of ``at_least`` so much. A NotFoundError if no submission of such an exercise
-    was graded."""
+    """Compare all submissions of each exercise with each other and with the course's own code.
+
+    Args:
+        exercises: ids; empty takes all that were graded.
+        at_least: the smallest share to report.
+
+    Raises:
+        NotFoundError: no submission of such an exercise was graded.
+    """
     found = Similar()
     known = set(catalog.exercise_ids()) - {QUIZ}
     graded = [item.id for item in results.exercises() if item.id in known]

@@ -23,8 +23,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One run of the public checks, or of the one that was asked for (``only``); what the module printed
-    while it was loaded; and by id of a failed check the student's curve and the right one."""
+    """One run of the public checks.
+
+    Attributes:
+        only: the one requested check or function; empty for all.
+        printed: the module's output while it was loaded.
+        curves: by id of a failed check, the student's curve and the right one.
+    """
 
     exercise: Exercise
     source: bytes
@@ -47,8 +52,12 @@ class Attempt:
         return CourseError(error.message, help=advice, code=error.code)
 
     def data(self, version: str, *, one_of_many: bool = False) -> dict[str, object]:
-        """The data of its event, of kind "check", in the form that ``history_of`` reads. ``one_of_many``:
-        every exercise was checked, so the student did not choose this one."""
+        """The data of its event, of kind "check", in the form that ``history_of`` reads.
+
+        Args:
+            version: of the course's content.
+            one_of_many: every exercise was checked, so the student did not choose this one.
+        """
         verdict = self.verdict
         return {
             "state": verdict.state,
@@ -75,8 +84,14 @@ def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
 
 
 def attempt(exercise: Exercise, catalog: Catalog, submission: Submission, only: str = "") -> Attempt:
-    """Run the public checks once, or one of them and those it requires; a NotFoundError if there is none
-    of that name."""
+    """Run the public checks once.
+
+    Args:
+        only: run this check and those it requires, and no others.
+
+    Raises:
+        NotFoundError: there is no check ``only``.
+    """
     begin = time.perf_counter()
     with open_session(exercise, catalog) as session:
         made = attempt_in(session, submission, begin, only)
@@ -84,7 +99,11 @@ def attempt(exercise: Exercise, catalog: Catalog, submission: Submission, only: 
 
 
 def attempt_in(session: GradingSession, submission: Submission, begin: float, only: str = "") -> Attempt:
-    """The same in a session that stays open; it began at ``begin``, by ``time.perf_counter``."""
+    """The same in a session that stays open.
+
+    Args:
+        begin: when it began, by ``time.perf_counter``.
+    """
     exercise = session.exercise
     known = [check.id for check in session.checks]
     if only and only not in known:

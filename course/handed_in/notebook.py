@@ -86,8 +86,11 @@ class CodeCell:
 
 
 def code_cells(data: bytes, name: str) -> list[CodeCell]:
-    """The code cells of a notebook, in its order; UngradableError if it is none, or one of another
-    language."""
+    """The code cells of a notebook, in its order.
+
+    Raises:
+        UngradableError: it is not a notebook, or one of another language.
+    """
     if len(data) > MAX_NOTEBOOK:
         message = f"{name} is larger than {MAX_NOTEBOOK >> 20} MB."
         advice = "Clear its outputs, save it, and hand it in again."
@@ -213,9 +216,13 @@ class _Record(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class NotebookSource(Places):
-    """A notebook as a module, with a sentence on each part left out, and each assumption. ``starts`` has,
-    ascending, the line of the module where a cell's lines begin, and the cell's number; ``called`` the
-    names of cells that are not "cell 7"."""
+    """A notebook as a module.
+
+    Attributes:
+        notes: parts left out, and assumptions, a sentence each.
+        starts: (line of the module, number of the cell), ascending: where each cell's lines begin.
+        called: names of cells by their numbers, for those that are not called "cell 7".
+    """
 
     source: bytes
     notes: tuple[str, ...]
@@ -271,8 +278,11 @@ def opened(files: Mapping[str, bytes], exercise: Exercise) -> Submission:
 
 
 def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook") -> NotebookSource:
-    """The module of a notebook; UngradableError if it is none, is of another language, or has none of the
-    functions."""
+    """The module of a notebook.
+
+    Raises:
+        UngradableError: it is not a notebook, is one of another language, or has none of the functions.
+    """
     try:
         return source_of(code_cells(data, name), exercise, name)
     except RecursionError:
@@ -283,8 +293,11 @@ def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook")
 def source_of(
     cells: list[CodeCell], exercise: Exercise, name: str, called: Mapping[int, str] | None = None
 ) -> NotebookSource:
-    """The module that cells stand for, however they came to be known and are ``called``; see
-    ``notebook_source``."""
+    """The module that cells stand for, however they came to be known; see ``notebook_source``.
+
+    Args:
+        called: names of cells by their numbers, for those that are not called "cell 7".
+    """
     functions = {task.id for task in exercise.task}
     chosen = [cell for cell in cells if _counts(cell, exercise.id, functions)]
     if not chosen:

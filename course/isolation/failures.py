@@ -58,8 +58,11 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
 
     @classmethod
     def missing(cls, function: str, why: StudentFailure | None = None) -> Self:
-        """The submission has no callable of this name; ``why`` is what kept it from being loaded, if the
-        file has it."""
+        """The submission has no callable of this name.
+
+        Args:
+            why: what kept it from being loaded, if the file has it.
+        """
         failure = cls("missing", type=function, message=f"no function {function!r}")
         failure.why = why
         return failure
@@ -83,8 +86,12 @@ _REFUSED_IMPORT = re.compile(
 
 
 def raised(value: Any, main: str, source: Sequence[str]) -> StudentFailure | None:
-    """The exception that a report is about; None if it is not a report. Nothing that came over the wire is
-    trusted, and the lines of ``source`` alone are quoted."""
+    """The exception that a report is about; None if it is not a report.
+
+    Args:
+        value: received over the wire, and not trusted.
+        source: its lines, which alone are quoted.
+    """
     if not isinstance(value, dict):
         return None
     kind = claimed_text(value.get("type"), 100)

@@ -40,7 +40,12 @@ class Level(StrEnum):
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits of one worker: bytes of address space, and of each file, the captured output included."""
+    """The limits of one worker.
+
+    Attributes:
+        memory: bytes of address space.
+        file_size: bytes per file, the captured output included.
+    """
 
     cpu_s: int = 210
     memory: int = 2 << 30
@@ -113,8 +118,11 @@ class Handle(Clock, Protocol):
 
 
 class Spawner(Protocol):
-    """Starts workers, one at a time, that promise what its level says; each worker has one submission, and
-    its effects end with it."""
+    """Starts workers, one at a time; each worker has one submission, and its effects end with it.
+
+    Attributes:
+        level: what its workers promise; verdicts and gradebooks note it.
+    """
 
     level: Level
 
@@ -160,8 +168,11 @@ _TICK_S = 0.1  # how often a worker that does not answer is looked at
 
 
 class ProcessClock:
-    """The CPU time of another process of this machine, all its threads together; it must not have been
-    waited for."""
+    """The CPU time of another process of this machine, all its threads together.
+
+    Args:
+        pid: as seen from here; it must not have been waited for.
+    """
 
     def __init__(self, pid: int) -> None:
         self._clock = (~pid << 3) | 2  # CPUCLOCK_SCHED of a process; clock_getcpuclockid(3)

@@ -44,8 +44,13 @@ _DEADLINE_S = 20.0
 
 @dataclass(frozen=True)
 class Protection:
-    """The strongest level that proved itself here, why the stronger ones failed, and how to raise it, one
-    sentence each; never to switch a protection off."""
+    """The protection that this machine can enforce.
+
+    Attributes:
+        level: the strongest level that proved itself.
+        causes: why the stronger ones failed, one sentence each.
+        advice: ways to raise the level, one sentence each; never to switch a protection off.
+    """
 
     level: Level
     causes: tuple[str, ...]
@@ -177,8 +182,11 @@ def open_sandbox(
     at_most: Level = Level.L3,
     processor: int | None = None,
 ) -> tuple[Spawner, int | None]:
-    """A spawner as ``open_spawner`` gives it, or one that was kept, and the processor of its workers: they
-    stay where this process was when it was opened."""
+    """A spawner as ``open_spawner`` gives it, or one that was kept, and the processor of its workers.
+
+    Args:
+        processor: where this process is while it opens one; a kept one's workers stay where it was opened.
+    """
     kind = (imports, at_least, at_most)
     those = [] if _free is None else _free.get(kind, [])
     while those:

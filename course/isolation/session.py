@@ -43,8 +43,13 @@ _MOST = 1 << 16  # bytes; an answer has some hundreds
 
 
 def where_it_hangs(handle: Handle, begun: bytes, main: str, source: bytes) -> StudentFailure | None:
-    """The timeout with the line it hangs at; None if the worker does not say, or cannot be asked. It is to
-    be ended afterwards; ``begun`` came from it and was not read yet."""
+    """The timeout with the line it hangs at; None if the worker does not say, or cannot be asked.
+
+    Args:
+        handle: the worker, which is to be ended afterwards.
+        begun: what came from it and was not read yet.
+        main: name of the submission's file.
+    """
     if wire.LOOK is None:
         return None
     for _ in range(wire.LOOKS):
@@ -125,8 +130,12 @@ _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 class LoadRefusedError(Exception):
     """The submission could not be loaded at all.
 
-    It is "syntax", "import", "timeout" or "crash"; what happened, as far as it is known; for a syntax
-    error the offending line; the line of the file; and what it printed till then.
+    Attributes:
+        stage: "syntax", "import", "timeout" or "crash".
+        failure: what happened, as far as it is known.
+        text: the offending line, for a syntax error.
+        code: the line of the file.
+        printed: what it printed till then.
     """
 
     def __init__(self, stage: str, failure: StudentFailure, text: str = "", code: str = "") -> None:
@@ -141,9 +150,13 @@ class LoadRefusedError(Exception):
 class LoadFault(NamedTuple):
     """What of a submission could not be loaded, by its own account.
 
-    It is "syntax", "import", "magic" for a line of IPython's, or "absent" for an import that something
-    stands for. The failure's line is where what was left out begins; ``text`` is the offending line, for a
-    syntax error, ``code`` that line of the file.
+    Attributes:
+        stage: "syntax", "import", "magic" for a line of IPython's, or "absent" for an import that something
+            stands for.
+        failure: why; its line is where what was left out begins.
+        names: what that would have defined.
+        text: the offending line, for a syntax error.
+        code: that line of the file.
     """
 
     stage: str
@@ -264,8 +277,11 @@ class Connection:
     # -- calls ----------------------------------------------------------------------------------------
 
     def call(self, function: str | RemoteFunction, *args: Any, **kwargs: Any) -> Any:
-        """The result of ``function``, as plain values (tuples as lists); a StudentFailure where it gave
-        none."""
+        """The result of ``function``, as plain values (tuples as lists).
+
+        Raises:
+            StudentFailure: it raised, ran out of time, died, or returned what cannot cross.
+        """
         return self._ask(Kind.CALL, [function, list(args), kwargs, False], function)
 
     def inspect(self, function: str, *args: Any) -> tuple[Any, list[Any], bool]:
@@ -277,13 +293,19 @@ class Connection:
         raise self._breach("an inspection in another form")
 
     def march(self, step: str, marches: list[list[Any]]) -> list[Any]:
-        """Positions and velocities of each march [right-hand side, q0, v0, t0, h, n], or why a step was
-        unusable."""
+        """Positions and velocities of each march, or the worker's report why a step was unusable.
+
+        Args:
+            marches: [right-hand side, q0, v0, t0, h, n] each.
+        """
         return self._batch(self._ask(Kind.MARCH, [step, marches], step), len(marches))
 
     def each(self, function: str, calls: list[list[Any]]) -> tuple[list[Any], bool]:
-        """The results of ``function`` for each list of arguments, and whether a later call changed one of
-        them; the loop runs in the student's process."""
+        """The results of ``function`` for each list of arguments; the loop runs in the student's process.
+
+        Returns:
+            The values, and whether a later call changed one of them.
+        """
         values, changed = self._batch(self._ask(Kind.EACH, [function, calls], function), 2)
         return self._batch(values, len(calls)), changed is not None
 

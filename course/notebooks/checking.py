@@ -216,7 +216,11 @@ class Run:
 
 
 class Runs:
-    """The cells that a shell runs from now on, and those that were deleted meanwhile."""
+    """The cells that a shell runs from now on, and those that were deleted meanwhile.
+
+    Args:
+        shell: of IPython.
+    """
 
     def __init__(self, shell: Any) -> None:
         self._shell = shell

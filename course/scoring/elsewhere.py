@@ -78,8 +78,12 @@ _LACKS: tuple[tuple[str, str, str], ...] = (
 
 
 def lacking(failure: StudentFailure, code: str = "", *, shown: bool = True) -> str:
-    """A sentence on what is not there where a check runs; "" if the failure has another cause. ``shown``:
-    the failure's words may be repeated."""
+    """A sentence on what is not there where a check runs; "" if the failure has another cause.
+
+    Args:
+        code: the line that failed.
+        shown: the failure's words may be repeated.
+    """
     if failure.type == "ImportNotDeclaredError" or "relative import" in failure.message:
         return absent(failure, code, shown=shown)
     said = f"{failure.type}: {failure.message} {' '.join(failure.bases)}"
@@ -143,8 +147,11 @@ def instead(module: str, name: str) -> str:
 
 
 def gone(failure: StudentFailure, *, shown: bool = True) -> str:
-    """A sentence on a name that this Python, or its NumPy, has not; "" if it is about none. Where the
-    failure's words are not to be ``shown``, only names of the table above are."""
+    """A sentence on a name that this Python, or its NumPy, has not; "" if it is about none.
+
+    Args:
+        shown: the failure's words may be repeated; else only names of the table above are.
+    """
     found = _ATTRIBUTE.search(failure.message)
     if found is None:
         return ""
@@ -173,7 +180,11 @@ _NEWER: tuple[tuple[str, str, tuple[int, int]], ...] = (
 
 
 def newer(failure: StudentFailure, code: str = "") -> str:
-    """That a newer Python reads the line, which this one cannot; "" where nothing speaks for it."""
+    """That a newer Python reads the line, which this one cannot; "" where nothing speaks for it.
+
+    Args:
+        code: the line.
+    """
     for said, look, version in _NEWER:
         if version > sys.version_info and re.search(said, failure.message) and re.search(look, code):
             since = ".".join(map(str, version))

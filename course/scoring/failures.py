@@ -110,8 +110,10 @@ def place_of(error: BaseException) -> tuple[str, int] | None:
 def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:
     """A failure as words: what happened and what to do, without any value of the check's.
 
-    The exception's own message is in ``actual``, which hidden checks do not show; where no input is
-    hidden, the message repeats it.
+    The exception's own message is in ``actual``, which hidden checks do not show.
+
+    Args:
+        shown: no input is hidden, so the message repeats the exception's own.
     """
     if failure.kind == "error":
         return _error_finding(failure, shown=shown)
@@ -230,8 +232,12 @@ _AS_ASKED = (
 
 @dataclass(frozen=True)
 class Section:
-    """One part of a report: paragraphs, separated by empty lines, in which lines that begin with "- " are
-    items; a table, in which every cell is text with its unit; a plot."""
+    """One part of a report.
+
+    Attributes:
+        text: paragraphs, separated by empty lines; lines that begin with "- " are items.
+        columns, rows: a table; every cell is text with its unit.
+    """
 
     title: str
     text: str = ""
@@ -242,7 +248,11 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """Everything a report shows; ``streams`` are recorded sensor streams by kind, for a ROS 2 bag."""
+    """Everything a report shows.
+
+    Attributes:
+        streams: recorded sensor streams by kind, for a ROS 2 bag.
+    """
 
     title: str
     sections: tuple[Section, ...]

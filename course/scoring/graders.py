@@ -36,8 +36,11 @@ _DECIDES = ("scoring", "isolation", "physics")
 
 
 def grader_files(content: Content, exercises: Collection[str] | None = None) -> Iterator[tuple[str, Path]]:
-    """Each file's name in an unpacked grader (``course/...``, ``content/...``), and where it is now; of
-    some exercises, without the quiz, or of all."""
+    """Each file's name in an unpacked grader (``course/...``, ``content/...``), and where it is now.
+
+    Args:
+        exercises: ids, where the others and the quiz are not to be graded; None for all.
+    """
     for path in _PACKAGE.glob("*.py"):
         if path.name != "__main__.py":
             yield f"course/{path.name}", path
@@ -71,8 +74,11 @@ def _below(name: str, folder: Path) -> Iterator[tuple[str, Path]]:
 
 
 def grader_version(exercise: Exercise, catalog: Catalog, package: Path = _PACKAGE) -> str:
-    """A digest of everything that decides an exercise's score: its files in a grader, and what runs them,
-    from the folder of ``course`` that is running, or a grader's own."""
+    """A digest of everything that decides an exercise's score: its files in a grader, and what runs them.
+
+    Args:
+        package: the folder of ``course``; the one that is running, unless it is a grader's own.
+    """
     content, place = catalog.content, catalog.content.place_of(exercise.id)
     folders = {name: package / name for name in _DECIDES}
     folders |= {name: folder / place for name in PLACES if (folder := content.place(name)) is not None}

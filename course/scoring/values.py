@@ -31,8 +31,13 @@ _HUGE = 1e150
 
 @dataclass(frozen=True, slots=True)
 class Inspected:
-    """The result of a call, its arguments as they were after it, and whether a returned array shares their
-    memory."""
+    """The result of a call and its effect on the arguments.
+
+    Attributes:
+        value: the returned value.
+        args_after: the arguments as they were after the call.
+        shared: True if a returned array shares memory with an argument.
+    """
 
     value: Any
     args_after: list[Any]

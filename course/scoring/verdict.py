@@ -115,8 +115,11 @@ class Problem(msgspec.Struct, frozen=True):
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     """Everything one grading of one submission found.
 
-    It is "graded", "ungradable" or "grader_error", and ``error`` says why; the code ran at protection
-    level "L3", "L2" or "L1"; warnings are remarks that cost no points.
+    Attributes:
+        state: "graded", "ungradable" or "grader_error".
+        isolation: protection level the student's code ran at: "L3", "L2" or "L1".
+        error: why it is ungradable, or what broke in the grader; None when graded.
+        warnings: remarks that cost no points.
     """
 
     exercise: str
@@ -136,7 +139,11 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def not_graded(exercise: str, most: float, state: str, error: Problem) -> Verdict:
-    """The verdict on work that no check judged, of an exercise with so many points."""
+    """The verdict on work that no check judged.
+
+    Args:
+        most: points of the exercise.
+    """
     return Verdict(
         exercise=exercise, scope="full", state=state, score=0.0, max_score=most, passed=False, checks=(),
         isolation="", error=error,

@@ -29,8 +29,13 @@ _MOST = 5
 
 
 class Graders(msgspec.Struct, frozen=True):
-    """What grades: its versions ("" if unknown), the names in some of their modules, and that Python's own
-    modules."""
+    """What grades.
+
+    Attributes:
+        python, numpy: their versions; "" if unknown.
+        names: what is in some of their modules.
+        modules: of that Python's own.
+    """
 
     python: str
     numpy: str = ""

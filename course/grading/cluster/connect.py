@@ -219,8 +219,11 @@ _ANSWER_S = 20.0
 
 @contextlib.contextmanager
 def local_cluster(workers: int) -> Iterator[GradeAll]:
-    """What grades on a cluster of ``workers`` processes on this machine, for one run; needs the extra
-    "cluster"."""
+    """What grades on a cluster of ``workers`` processes on this machine, for one run.
+
+    Raises:
+        MissingCapabilityError: Dask is not installed.
+    """
     require("cluster")
     with contextlib.ExitStack() as stack:
         yield lambda entries, terms: _graded(start_cluster(stack, workers), entries, terms)
@@ -228,10 +231,12 @@ def local_cluster(workers: int) -> Iterator[GradeAll]:
 
 @contextlib.contextmanager
 def remote_cluster(address: str) -> Iterator[GradeAll]:
-    """What grades on the cluster whose scheduler is at ``address``, or is in the scheduler file of that
-    name; it needs the extra "cluster", too.
+    """What grades on the cluster whose scheduler is at ``address``, or is in the scheduler file of that name.
 
     Others may use it too, so unprotected submissions, which could command it, raise a UsageError there.
+
+    Raises:
+        MissingCapabilityError: Dask is not installed.
     """
     require("cluster")
     with contextlib.ExitStack() as stack:
@@ -324,8 +329,11 @@ def _reach(stack: contextlib.ExitStack, address: str) -> Any:
 
 
 class DaskWorkers:
-    """The workers of a Dask cluster, as the coordinator sees them; ``task``, bytes to bytes, is known there
-    by the same name."""
+    """The workers of a Dask cluster, as the coordinator sees them.
+
+    Args:
+        task: the function to run there, bytes to bytes; known there by the same name.
+    """
 
     def __init__(self, client: Any, task: Callable[[bytes], bytes] = grade_batch) -> None:
         self._client = client

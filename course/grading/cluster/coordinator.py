@@ -37,7 +37,11 @@ _PATIENCE_S = 600.0
 
 @dataclass(frozen=True)
 class LostBatch:
-    """A batch that did not come back: so many workers in a row died with it."""
+    """A batch that did not come back, because its worker died.
+
+    Attributes:
+        deaths: how many workers in a row died with this batch.
+    """
 
     deaths: int = 1
 
@@ -65,9 +69,13 @@ def grade_on(
 ) -> Iterator[Graded]:
     """Verdicts on all entries that have a submission or a problem, in the order they arrive.
 
-    The workers' graders must have the version that ``version`` gives for an exercise; the snapshot,
-    packed, is sent to one that lacks it. CourseError: they cannot grade (version, protection level,
-    content), or there have been none for ``patience_s`` wall seconds.
+    Args:
+        version: the version of an exercise's graders, by its id, which the workers' graders must have too.
+        graders: the snapshot that ``terms`` names, packed; it is sent to a worker that lacks it.
+        patience_s: wall seconds to wait for a worker when there is none.
+
+    Raises:
+        CourseError: the workers cannot grade (version, protection level, content), or there are none left.
     """
     yield from _Coordinator(workers, iter(entries), terms, version, graders, patience_s).run()
 

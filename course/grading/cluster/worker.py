@@ -45,8 +45,12 @@ FORMAT = 4
 
 
 class Batch(msgspec.Struct, frozen=True):
-    """Submissions for one worker, and how to grade them. ``graders`` is the snapshot that ``terms`` names,
-    packed; empty until the worker asked for it."""
+    """Submissions for one worker, and how to grade them.
+
+    Attributes:
+        format: the sender's ``FORMAT``.
+        graders: the snapshot that ``terms`` names, packed; empty until the worker asked for it.
+    """
 
     format: int
     terms: Terms
@@ -57,9 +61,12 @@ class Batch(msgspec.Struct, frozen=True):
 class Answers(msgspec.Struct, frozen=True):
     """A worker's reply to a batch.
 
-    There is one answer for each job, in order, but none after one that is an error; one with neither
-    verdict nor error is of a submission that no grader survived. A worker that lacks the snapshot is
-    ``wanting`` it and has none.
+    Attributes:
+        host: the worker's machine, for messages.
+        answers: one for each job, in order, but none after one that is an error. An answer with neither
+            verdict nor error is of a submission that no grader survived.
+        seconds: wall time the worker spent on the batch.
+        wanting: the worker lacks the snapshot, and so has no answers.
     """
 
     format: int

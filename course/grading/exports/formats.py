@@ -158,8 +158,14 @@ _OF_A_RUN = {"csv", "jsonl", "html"}
 def export(results: Results, name: str, out: Path, target: Path | None, options: ExportOptions) -> Written:
     """Write one format.
 
-    Where no target is named, it goes into ``out``, the folder of the run, under the format's own name; or
-    into ``out/part``, if some exercises or students are left out and a run keeps that file about all.
+    Args:
+        out: folder of the grading run.
+        target: where to; in ``out`` under the format's own name if None, or in ``out/part`` if some exercises
+            or students are left out and a run keeps that file about all.
+
+    Raises:
+        UsageError: there is no such format, or it needs something that was not given.
+        MissingCapabilityError: students are missing in the roster, or it cannot be written.
     """
     if name not in FORMATS:
         message = f"--format is {name!r}."

@@ -60,8 +60,11 @@ def number(value: float | None) -> str:
 
 
 def csv_bytes(headings: Sequence[str], rows: Iterable[Sequence[str]], *, mark: bool = True) -> bytes:
-    """A table with every cell quoted and safe. The byte order mark makes Excel read UTF-8; not every program
-    knows it."""
+    """A table with every cell quoted and safe.
+
+    Args:
+        mark: put a byte order mark in front, which makes Excel read UTF-8; not every program knows it.
+    """
     text = io.StringIO(newline="")
     writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
     writer.writerow([safe_cell(cell) for cell in headings])
@@ -79,8 +82,9 @@ def write_bytes(path: Path, content: bytes) -> None:
 def replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file that takes its name when it is complete; until then the old one stays.
 
-    UsageError: it is a folder, or a database: a gradebook, most likely. MissingCapabilityError: there is
-    no room.
+    Raises:
+        UsageError: it is a folder, or a database: a gradebook, most likely.
+        MissingCapabilityError: there is no room, or it cannot be written there.
     """
     draft = None
     try:

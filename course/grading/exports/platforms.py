@@ -227,7 +227,11 @@ _MODIFIED, _FEEDBACK, _OPEN = "Last modified (grade)", "Feedback comments", "Gra
 
 
 def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Written:
-    """The worksheet with the grades of one exercise; a UsageError if there is none, or not one exercise."""
+    """The worksheet with the grades of one exercise.
+
+    Raises:
+        UsageError: there is no worksheet, the file is not one, or there are several exercises.
+    """
     if options.worksheet is None:
         advice = "Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'."
         raise UsageError("There is no worksheet to fill in.", help=advice, code="needs_roster")

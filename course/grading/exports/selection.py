@@ -45,8 +45,12 @@ class ExportOptions:
 
 @dataclass(frozen=True)
 class Needs:
-    """The key by which a platform finds a student: the columns of our own roster, one of which has to have
-    it, and where to get it."""
+    """The key by which a platform finds a student.
+
+    Attributes:
+        columns: of our own roster, one of which has to have it.
+        give: where to get the key, as the beginning of a sentence.
+    """
 
     columns: tuple[str, ...]
     platform: str
@@ -63,9 +67,11 @@ class Needs:
 class Written:
     """The result of an export.
 
-    ``unmatched`` students are left out; ``without_grade`` are results ("student exercise") without a score
-    because the grader failed; rows of a platform's file are ``kept`` that have a grade, feedback or an
-    excuse of a teacher's.
+    Attributes:
+        unmatched: students left out.
+        without_grade: "student exercise" of results without a score because the grader failed.
+        kept: rows of a platform's file that have a grade, feedback or an excuse of a teacher's, with it.
+        notes: what the instructor should know, one sentence each.
     """
 
     paths: list[Path] = field(default_factory=list)
@@ -78,8 +84,12 @@ class Written:
 
 @dataclass
 class Selection:
-    """The results of an export; ``people`` has the rows of the roster by student, ``zeros`` makes what was
-    not handed in count as 0."""
+    """The results of an export.
+
+    Attributes:
+        people: student -> row of the roster; empty without one.
+        zeros: work that was not handed in counts as 0.
+    """
 
     results: Results
     exercises: tuple[str, ...]
@@ -107,8 +117,15 @@ def select(
 ) -> Selection:
     """Select the content of an export.
 
-    ``usable`` says whether a row of the roster has the key this format finds people by, which is what it
-    ``needs``; without it a roster is not needed.
+    Args:
+        usable: whether a row of the roster has the key this format finds people by; without it a roster is
+            not needed.
+        needs: that key.
+
+    Raises:
+        NotFoundError: no such exercise.
+        UsageError: this format needs a roster.
+        MissingCapabilityError: the roster lacks students, and ``partial`` was not asked for.
     """
     known = {exercise.id for exercise in results.exercises()}
     unknown = [name for name in (*options.exercises, *options.assignments) if name not in known]
@@ -147,8 +164,12 @@ def select(
 
 
 def check_settled(selection: Selection, options: ExportOptions) -> None:
-    """Refuse to tell a platform what is not known yet, as a run has still to look at it, or a zero that
-    the instructor has not confirmed, by a score by hand or by ``zeros`` (MissingCapabilityError)."""
+    """Refuse to tell a platform what is not known yet, or a zero that the instructor has not confirmed.
+
+    Raises:
+        MissingCapabilityError: a run has still to look at somebody's work; or something could not be graded,
+            and neither a score by hand nor ``zeros`` says that it is worth 0.
+    """
     left_out = set(selection.written.unmatched)
     asked = [item for item in selection.results.all() if item.exercise in selection.exercises]
     unread = {item.student for item in asked if item.waiting}
@@ -185,7 +206,11 @@ def begins(path: Path, mark: bytes) -> bool:
 
 
 def refuse_to_replace(folder: Path, files: Iterable[Path], made: str) -> None:
-    """Refuse to replace files in a folder which no export to ``made`` wrote."""
+    """Refuse to replace files in a folder which no export to ``made`` wrote.
+
+    Raises:
+        UsageError: one of them is there.
+    """
     if names := [one_line(str(file.relative_to(folder))) for file in sorted(files) if file.exists()]:
         message = f"{folder} has {some(names, 3)}, and no export to {made} made it. Nothing was written."
         raise UsageError(message, help="Name a folder without it: -o FOLDER.", code="out_exists")

@@ -216,11 +216,13 @@ class Gradebook:
         return int(newest[0]) + 1
 
     def confirm(self, key: Key, moving: AbstractContextManager[None] | None = None) -> bool:
-        """Whether this very submission was graded; if so, make that the newest result of its student
-        again, in ``moving``.
+        """Whether this very submission was graded; if so, make that the newest result of its student again.
 
         A student who hands in an earlier version again gets the score of that version. A result of other
         graders than the key's counts too, so that nothing is graded again without need.
+
+        Args:
+            moving: entered while another result becomes the newest.
         """
         number = self._find(key)
         if number is None:
@@ -254,7 +256,11 @@ class Gradebook:
         yield from self._results(f" WHERE {newest}", arguments)
 
     def verify(self) -> None:
-        """Look at every page, every decision, and all that opening leaves unread because it is large."""
+        """Look at every page, every decision, and all that opening leaves unread because it is large.
+
+        Raises:
+            IntegrityError: the file is damaged.
+        """
         with explained(self.path):
             told = self._db.execute("PRAGMA quick_check(1)").fetchone()[0]
             if told != "ok":
@@ -320,7 +326,11 @@ class Gradebook:
     # -- what an instructor decided -------------------------------------------------------------------
 
     def add_override(self, override: Override, before: str = "") -> None:
-        """Store a decision, here and in the journal, with what counted before; earlier ones are kept."""
+        """Store a decision, here and in the journal; earlier ones are kept.
+
+        Args:
+            before: what counted before, for the journal.
+        """
         at = override.at or _now()
         row = (override.student, override.exercise, override.score, override.reason, at)
         with self._transaction():
@@ -363,7 +373,11 @@ class Gradebook:
             return [_as(Decision, row) for row in rows]
 
     def set_waiting(self, students: Iterable[str], *, others: bool) -> None:
-        """Note whose work a run has still to look at; with ``others``, beside those who waited before."""
+        """Note whose work a run has still to look at.
+
+        Args:
+            others: those who waited before go on waiting.
+        """
         with self._transaction():
             if not others:
                 self._db.execute("DELETE FROM waiting")

@@ -191,8 +191,10 @@ def rescue(path: Path, otherwise: str = "") -> str:
 def explained(path: Path) -> Iterator[None]:
     """Errors of SQLite, and of what reads the content of a row, as sentences.
 
-    UsageError: another process is using the file. MissingCapabilityError: it cannot be read or written
-    where it is. IntegrityError: it is damaged.
+    Raises:
+        UsageError: another process is using the file.
+        MissingCapabilityError: it cannot be read or written where it is.
+        IntegrityError: it is damaged.
     """
     try:
         yield
@@ -226,8 +228,11 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
 
 
 def create(path: Path) -> None:
-    """An empty gradebook, made under another name first: a run killed here leaves none, not half of one. It
-    is a UsageError if another run made one meanwhile."""
+    """An empty gradebook, made under another name first: a run killed here leaves none, not half of one.
+
+    Raises:
+        UsageError: another run made one meanwhile.
+    """
     # A name that no other process uses; a killed run's name is reused only if its process is gone.
     names = (f"{path.stem}.new-{os.getpid()}-{number}" for number in itertools.count())
     draft = next(draft for draft in map(path.with_name, names) if not draft.exists())
@@ -258,8 +263,17 @@ def _publish(draft: Path, path: Path) -> None:
 
 
 def open_file(path: Path, *, writing: bool) -> sqlite3.Connection:
-    """An open, recognised and up-to-date gradebook, or what ``Gradebook`` raises; for writing it is locked
-    against all other processes until it is closed."""
+    """An open, recognised and up-to-date gradebook.
+
+    Args:
+        writing: lock it against all other processes until it is closed.
+
+    Raises:
+        NotFoundError: there is none.
+        UsageError: another process is writing it.
+        MissingCapabilityError: it belongs to a newer version, or cannot be written here.
+        IntegrityError: the file is damaged or no gradebook.
+    """
     if not path.is_file():
         message = f"There is no gradebook at {path}."
         advice = rescue(path, "Name the folder that `course grade run --out` wrote.")

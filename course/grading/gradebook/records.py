@@ -20,8 +20,13 @@ class Key:
 
 @dataclass(frozen=True)
 class Result:
-    """One stored result, graded at a time (UTC, ISO 8601) in the grading or regrading of that number.
-    ``number`` grows with time; the newest result of a student and exercise is the one that counts."""
+    """One stored result.
+
+    Attributes:
+        graded_at: UTC, ISO 8601.
+        run: number of the grading or regrading it came from.
+        number: grows with time; the newest result of a student and exercise is the one that counts.
+    """
 
     key: Key
     verdict: Verdict
@@ -41,8 +46,13 @@ class GradedExercise(msgspec.Struct, frozen=True):
 
 
 class PlatformIdentity(msgspec.Struct, frozen=True):
-    """A student's identity in the system a class was downloaded from ("canvas", "moodle" or "gradescope"):
-    the number there, and the name as that system spells it."""
+    """A student's identity in the system a class was downloaded from.
+
+    Attributes:
+        source: "canvas", "moodle" or "gradescope".
+        key: the student's number there.
+        name: as that system spells it.
+    """
 
     source: str
     key: str
@@ -52,9 +62,13 @@ class PlatformIdentity(msgspec.Struct, frozen=True):
 
 
 class SubmittedAt(msgspec.Struct, frozen=True):
-    """A time of submission (seconds since 1970, UTC; None if not said), by one witness: "gradescope",
-    "list", "mtime", or "canvas-late", which only says: late. Without a digest it is of any submission by
-    this student."""
+    """A time of submission, by one witness.
+
+    Attributes:
+        submission_sha256: of the submission; empty for any by this student.
+        source: the witness: "gradescope", "list", "mtime", or "canvas-late" (which only says: late).
+        at: seconds since 1970, UTC; None if the witness does not say.
+    """
 
     student: str
     exercise: str
@@ -64,8 +78,12 @@ class SubmittedAt(msgspec.Struct, frozen=True):
 
 
 class Looked(msgspec.Struct, frozen=True):
-    """Whose work was looked at for an exercise: the class without ``names``, or these alone. One that was
-    asked for by name can be missing whoever handed it in."""
+    """Whose work was looked at for an exercise.
+
+    Attributes:
+        whole: the class, but for ``names``; otherwise these alone.
+        named: it was asked for by name, so that it can be missing whoever handed it in.
+    """
 
     whole: bool = False
     named: bool = False
@@ -94,12 +112,15 @@ class Override(msgspec.Struct, frozen=True):
 
 
 class Decision(msgspec.Struct, frozen=True):
-    """A change of grades: who made it (empty for the account this runs under), when (UTC, ISO 8601; empty
-    for now), and why.
+    """A change of grades: who made it, and why.
 
-    ``kind`` is "override", "lift", "assign", "late", "rerun", "resume" (another submission counts now),
-    "roster" or "salvage"; without student and exercise it is about a whole class. What counted before and
-    what counts is told in words or JSON.
+    Attributes:
+        at: UTC, ISO 8601; empty for now.
+        who: the name of the account; empty for the one this runs under.
+        kind: "override", "lift", "assign", "late", "rerun", "resume" (another submission
+            counts now), "roster" or "salvage".
+        student, exercise: what it is about; empty for a whole class.
+        before, after: in words or JSON, what counted and what counts.
     """
 
     at: str

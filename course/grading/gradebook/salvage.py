@@ -48,7 +48,11 @@ class _DamagedError(Exception):
 
 
 def raw_rows(data: bytes) -> Iterator[tuple[int | None, tuple[Cell, ...]]]:
-    """Everything in a whole file that can be read as a row, with its number if it has one."""
+    """Everything that can be read as a row, with its number if it has one.
+
+    Args:
+        data: a whole file.
+    """
     pages = _Pages(data)
     for number in range(len(data) // pages.size):
         yield from pages.rows(number)
@@ -202,8 +206,13 @@ _NUMBERED = {"runs", "overrides", "results", "journal"}
 
 @dataclass
 class Salvaged:
-    """The recovered rows by table, how many of these only a backup had, and the known losses, a sentence
-    each."""
+    """The recovered rows, and the losses.
+
+    Attributes:
+        rows: number of rows by table.
+        from_backup: of these, those only a backup had.
+        lost: known losses, a sentence each.
+    """
 
     rows: Counter[str] = field(default_factory=Counter)
     from_backup: Counter[str] = field(default_factory=Counter)
@@ -213,8 +222,11 @@ class Salvaged:
 def salvage(path: Path, target: Path) -> Salvaged:
     """Write a new gradebook from all intact rows of a damaged one and its backups; those stay unchanged.
 
-    NotFoundError: there is no gradebook and no backup. IntegrityError: no row in them is intact.
-    UsageError: ``target`` exists. MissingCapabilityError: it cannot be written.
+    Raises:
+        NotFoundError: there is no gradebook and no backup.
+        IntegrityError: no row in them is intact.
+        UsageError: ``target`` exists.
+        MissingCapabilityError: it cannot be written.
     """
     others = backups(path)
     if not path.is_file() and not others:

@@ -58,10 +58,12 @@ class RefusedError(UngradableError):
 
 
 def quiz_of(path: Path, loose: bytes) -> object:
-    """The quiz attempts in what ``course submit`` wrote: an archive, or its metadata alone once unpacked
-    (``loose``).
+    """The quiz attempts in what ``course submit`` wrote: an archive, or its metadata alone once unpacked.
 
     Words if they have another form, or if the metadata cannot be read and no file beside it will say so.
+
+    Args:
+        loose: the metadata, unpacked; empty if it is in an archive.
     """
     alone = bool(loose)
     try:
@@ -85,9 +87,14 @@ def _is_ours(manifest: bytes) -> bool:
 
 
 class ArchiveContent(msgspec.Struct, frozen=True):
-    """An archive's file for an exercise, by its name there, with a sentence on each assumption that was
-    made, the members that are the same file, and the Python and NumPy that it was written with, if it says
-    so."""
+    """An archive's file for an exercise.
+
+    Attributes:
+        name: in the archive.
+        notes: assumptions that were made, one sentence each.
+        copies: the members that are the same file, this one included.
+        written: the Python and NumPy that it was written with, by its own account; empty if it has none.
+    """
 
     name: str
     content: bytes
@@ -97,7 +104,11 @@ class ArchiveContent(msgspec.Struct, frozen=True):
 
 
 def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
-    """A zip's module or notebook for an exercise; None if there is neither. Several are refused."""
+    """A zip's module or notebook for an exercise; None if there is neither.
+
+    Raises:
+        RefusedError: also where it holds several.
+    """
 
     held = _given(_held(path))
     wanted = _wanted_members(held.names, exercise)
@@ -417,12 +428,20 @@ class Reader:
         return told.content, told.record
 
     def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
-        """An archive's file for an exercise; None if it has none."""
+        """An archive's file for an exercise; None if it has none.
+
+        Raises:
+            RefusedError: it must not be opened, or is damaged.
+        """
         return self._ask(_about("archive", path, exercise=exercise)).found
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
-        """What a file is, and which of these functions it defines, or each file in an archive but those to
-        skip."""
+        """What a file is, and the functions that it defines, or each file in an archive.
+
+        Args:
+            skip: members of the archive to ignore.
+            functions: the names to look for.
+        """
         return self._ask(_about("outline", path, functions=functions, skip=skip)).outlines
 
     def member(self, path: Path, name: str) -> bytes:
@@ -430,8 +449,11 @@ class Reader:
         return self._ask(_about("member", path, skip=(name,))).content
 
     def quiz_in(self, path: Path, loose: bytes = b"") -> Any:
-        """The quiz attempts in an archive, or in ``loose``, what a file that is none holds; words if they
-        have another form, None if it has none."""
+        """The quiz attempts in an archive; words if they have another form, None if it has none.
+
+        Args:
+            loose: what ``path`` holds, where that is no archive.
+        """
         return json.loads(self._ask(_about("quiz", path, content=loose)).content)
 
     def _ask(self, ask: _Request) -> _Reply:

@@ -98,8 +98,11 @@ _SHOWN = 5
 
 @dataclass(frozen=True)
 class Place:
-    """Where a student's files are: in a folder of their own, or, as ``files`` with the names the student
-    gave, in a shared one."""
+    """Where a student's files are: a folder of their own, or some of the files in a shared one.
+
+    Attributes:
+        files: name the student gave -> path, where the folder is shared; None for a folder of one's own.
+    """
 
     root: Path
     files: tuple[tuple[str, Path], ...] | None = None
@@ -117,8 +120,11 @@ class Place:
         return [path for _, path in sorted(mine, key=lambda item: item[0])]
 
     def unwrapped(self, known: Collection[str]) -> "Place":
-        """The folder that has everything in it, as a workspace that was handed in whole, and is none of those
-        known to belong there; else this place."""
+        """The folder that has everything in it, as a workspace that was handed in whole; else this place.
+
+        Args:
+            known: folders that belong there.
+        """
         root = self.root
         for _ in range(_WRAPPED if self.files is None else 0):
             inside = [one for one in _entries(root) if not is_clutter(one[0])]
@@ -176,7 +182,12 @@ class Student:
 
 @dataclass
 class ClassList:
-    """A class: its students, ordered by name, and a sentence about each file with an unknown owner."""
+    """A class.
+
+    Attributes:
+        students: ordered by name.
+        unrecognised: files with an unknown owner, one sentence each.
+    """
 
     layout: str
     students: list[Student] = field(default_factory=list)
@@ -186,8 +197,10 @@ class ClassList:
 def class_list(folder: Path, layout: str = "auto") -> ClassList:
     """The class in a folder.
 
-    NotFoundError: there is no such folder, or it has no students. UsageError: some names are a platform's
-    and some are not. MissingCapabilityError: reading this download needs something that is not installed.
+    Raises:
+        NotFoundError: there is no such folder, or it has no students.
+        UsageError: some names are a platform's and some are not; the message lists them.
+        MissingCapabilityError: reading this download needs something that is not installed.
     """
     if layout not in LAYOUTS:
         raise UsageError(f"--layout is {layout!r}.", help=f"It takes {', '.join(LAYOUTS)}.")
@@ -529,11 +542,14 @@ class Meter:
 
 
 def compressed(path: Path, kind: str, most: int, total: int, meter: Meter) -> Iterator[tuple[str, bytes]]:
-    """Names and contents of what may be code in a tar archive, or of the one file that was compressed;
-    larger ones than so many bytes, each or all together, are passed over.
+    """Names and contents of what may be code in a tar archive, or of the one file that was compressed.
 
-    TooMuchError: to find them takes more than the meter allows, or a path is too long. OSError: it is
-    damaged.
+    Args:
+        most, total: bytes of a file, and of all of them; larger ones are passed over.
+
+    Raises:
+        TooMuchError: to find them takes more than the meter allows, or a path is too long.
+        OSError: it is damaged.
     """
     try:
         with _OPENERS[kind](path, "rb") as meter.source:

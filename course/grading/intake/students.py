@@ -392,7 +392,11 @@ _TAKEN_AS = frozenset({"a notebook", "a zip archive"})
 
 
 def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submission:
-    """A file that an instructor named as a submission, whatever its name, or a member of an archive."""
+    """A file that an instructor named as a submission, whatever its name.
+
+    Args:
+        member: name in the archive at ``path``; empty for the file itself.
+    """
     content = reader.member(path, member) if member else _read_regular(path, quoted(path.name), MAX_NOTEBOOK)
     notebook = (member or path.name).casefold().endswith(".ipynb") or is_notebook(content)
     _within(content, quoted(path.name), MAX_NOTEBOOK if notebook else MAX_FILE)
@@ -454,9 +458,13 @@ def _within(content: bytes, shown: str, limit: int) -> bytes:
 def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | None]:
     """A student's quiz attempts, as in the JSON, and the file they came in; an empty list if none.
 
-    An archive that cannot be read gives none: the exercises in it report what is wrong with it, unless
-    this is read ``alone``. UngradableError: several files hold different attempts, or a file that may hold
-    some was not read.
+    An archive that cannot be read gives none: the exercises in it report what is wrong with it.
+
+    Args:
+        alone: no exercise is read that could.
+
+    Raises:
+        UngradableError: several files hold different attempts, or a file that may hold some was not read.
     """
     found: list[tuple[Any, Path]] = []
     unread: RefusedError | None = None
@@ -522,8 +530,12 @@ class Candidate(msgspec.Struct, frozen=True):
 
 
 class Found(msgspec.Struct, frozen=True):
-    """The files of one student that may be meant for an exercise, but not by their names, the code of the
-    problem, and who says when they were handed in."""
+    """The files of one student that may be meant for an exercise, but not by their names.
+
+    Attributes:
+        reason: the code of the problem.
+        times: who says when it was handed in, and when.
+    """
 
     reason: str
     candidates: tuple[Candidate, ...]
@@ -531,7 +543,12 @@ class Found(msgspec.Struct, frozen=True):
 
 
 def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercise]) -> list[Candidate]:
-    """A student's files that no exercise was graded from, with those of the functions that they define."""
+    """A student's files that no exercise was graded from.
+
+    Args:
+        used: path and member of the graded ones.
+        exercises: look for their functions.
+    """
     functions = tuple(dict.fromkeys(task.id for exercise in exercises for task in exercise.task))
     candidates: list[Candidate] = []
     left = _CODE
@@ -596,10 +613,12 @@ def _outlined(
 def found_for(
     exercise: Exercise, candidates: Iterable[Candidate], *, asked: Collection[Candidate]
 ) -> tuple[Candidate, ...]:
-    """The files that may be meant for an exercise, those ``asked`` for whatever they are called, the
-    likeliest first, with the one match if there is one.
+    """The files that may be meant for an exercise, the likeliest first, with the one match if there is one.
 
     The one in which most functions are written is the match; names decide only where no file has any.
+
+    Args:
+        asked: files that may be meant for it whatever they are called.
     """
     tasks = [task.id for task in exercise.task]
     stem = Path(exercise.module).stem.casefold()

@@ -156,7 +156,14 @@ class Results:
 
     @classmethod
     def open(cls, out: Path) -> Self:
-        """The results in the folder of a run, opened as a ``Gradebook`` is; close ``book`` when done."""
+        """The results in the folder of a grading run; close ``book`` when done.
+
+        Raises:
+            NotFoundError: there is no gradebook.
+            UsageError: a run is writing it.
+            MissingCapabilityError: a newer version wrote it.
+            IntegrityError: it is damaged.
+        """
         return cls(Gradebook(out / "gradebook.sqlite"))
 
     def take_in(self, times: Iterable[SubmittedAt]) -> None:
@@ -201,7 +208,11 @@ class Results:
 
     def called(self, name: str) -> str:
         """The student who is called so: a name in the gradebook, or what the roster knows about one alone.
-        Several are refused (NotFoundError); anything else is given back as it is, for whoever asks to refuse.
+
+        Anything else is given back as it is, for whoever asks to refuse.
+
+        Raises:
+            NotFoundError: several students are called so.
         """
         students = self.students()
         if name in students:
@@ -227,7 +238,11 @@ class Results:
         return one_line(student) + (f" ({known})" if known else "")
 
     def verify(self) -> None:
-        """Read every row there is, so that a damaged gradebook answers nothing but an IntegrityError."""
+        """Read every row there is, so that a damaged gradebook answers nothing.
+
+        Raises:
+            IntegrityError: something is not what was written.
+        """
         self.book.verify()
         for _ in self.all():
             pass
@@ -422,7 +437,11 @@ def moved(before: Scores, after: Scores) -> list[ScoreChange]:
 
 @contextlib.contextmanager
 def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[list[ScoreChange]]:
-    """Record which scores the decision in this block changed; they are in the list after it."""
+    """Record which scores the decision in this block changed; they are in the list after it.
+
+    Args:
+        kind: as in ``Decision``.
+    """
     told: list[ScoreChange] = []
     before = counting(Results(book))
     yield told
@@ -447,7 +466,11 @@ def replacing(book: Gradebook, view: Results, key: Key) -> Iterator[None]:
 
 
 def counted(counts: Effective | None, file: str = "") -> str:
-    """What counts for a student's exercise, with the file that the instructor chose, as a decision has it."""
+    """What counts for a student's exercise, as a decision about it keeps it.
+
+    Args:
+        file: the file that the instructor chose, if any.
+    """
     if counts is None:
         return msgspec.json.encode({"state": "missing", "score": None}).decode()
     told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score, "of": counts.max_score}
@@ -479,11 +502,15 @@ _MAX_REASON = 2000
 
 
 def override(results: Results, student: str, exercise: str, score: float, reason: str) -> Effective:
-    """Set a score, from 0 to the exercise's maximum, and store the reason; earlier decisions stay in the
-    gradebook.
+    """Set a score and store the reason; earlier decisions stay in the gradebook.
 
-    NotFoundError: the gradebook knows no such student or exercise. UsageError: no such score is possible,
-    or there is no reason.
+    Args:
+        results: over a gradebook opened for writing.
+        score: points, from 0 to the exercise's maximum.
+
+    Raises:
+        NotFoundError: the gradebook knows no such student or exercise.
+        UsageError: no such score is possible, or there is no reason.
     """
     most = _maximum(results, student, exercise)
     if not math.isfinite(score) or not 0 <= score <= most:
@@ -496,7 +523,11 @@ def override(results: Results, student: str, exercise: str, score: float, reason
 
 
 def given_reason(reason: str, what: str, shown: str) -> str:
-    """An instructor's reason for a decision; a UsageError if there is none, or it is too long."""
+    """An instructor's reason for a decision.
+
+    Raises:
+        UsageError: there is none, or it is too long.
+    """
     reason = reason.strip()
     if not reason or len(reason) > _MAX_REASON:
         message = f"{what} needs a reason of at most {_MAX_REASON} characters."
@@ -505,7 +536,11 @@ def given_reason(reason: str, what: str, shown: str) -> str:
 
 
 def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
-    """Let the graders' result count again; None if there is none. NotFoundError if it counts already."""
+    """Let the graders' result count again; None if there is none.
+
+    Raises:
+        NotFoundError: there is no override to lift.
+    """
     _maximum(results, student, exercise)
     found = next(results.all(student, exercise), None)
     if found is None or found.override is None:
@@ -538,7 +573,11 @@ def _only(students: Sequence[str], name: str) -> str:
 
 
 def must_have(results: Results, student: str) -> None:
-    """Refuse a name that is no student's of the gradebook (NotFoundError)."""
+    """Refuse a name that is no student's.
+
+    Raises:
+        NotFoundError: the gradebook has no such student.
+    """
     if student not in results.students():
         message = f"The gradebook has no student {student!r}."
         advice = "grades.csv lists all, and with a roster everybody who is enrolled."

@@ -85,8 +85,12 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     trust: tuple[Source, ...] = ("list", "gradescope")
 
     def due(self, exercise: str, student_names: tuple[str, ...], granted_days: float = 0.0) -> float | None:
-        """When it is due for this student, by every name, in seconds since 1970; None if the policy does
-        not say. ``granted_days`` are more time from the roster; the longest extension counts."""
+        """When it is due for this student, in seconds since 1970; None if the policy does not say.
+
+        Args:
+            student_names: every id the student goes by.
+            granted_days: more time from elsewhere (the roster); the longest extension counts.
+        """
         exact = [item for item in self.deadline if item.exercise == exercise]
         found = exact or [item for item in self.deadline if item.exercise == "*"]
         if not found:
@@ -122,7 +126,12 @@ def may_change(first: float, last: float) -> bool:
 
 
 def read_policy(path: Path) -> tuple[Policy, str]:
-    """A policy, read as ``parse_policy`` does, and its text for the gradebook."""
+    """A policy, and its text for the gradebook.
+
+    Raises:
+        UsageError: the file cannot be read, or is not a policy.
+        MissingCapabilityError: it is in a newer format.
+    """
     try:
         text = read_bytes(path).decode("utf-8-sig")
     except (OSError, UnicodeError) as error:
@@ -132,8 +141,12 @@ def read_policy(path: Path) -> tuple[Policy, str]:
 
 
 def parse_policy(text: str, name: str = "The late policy") -> Policy:
-    """A policy from its text; UsageError if it is none, which names the place, MissingCapabilityError if
-    it is in a newer format."""
+    """A policy from its text.
+
+    Raises:
+        UsageError: it is not a policy; the message names the place.
+        MissingCapabilityError: it is in a newer format.
+    """
     with contextlib.suppress(tomllib.TOMLDecodeError):
         version = toml(text).get("format_version")
         if isinstance(version, int) and version > FORMAT_VERSION:
@@ -209,8 +222,12 @@ class Worksheet:
 
 
 def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
-    """Such a list, or a worksheet of Moodle's; UsageError if it cannot be read, is neither, or has two times
-    for the same work."""
+    """Read such a list, or a worksheet of Moodle's.
+
+    Raises:
+        UsageError: it cannot be read, is not such a list, or has two times for the same work; the message
+            names the line.
+    """
     try:
         text = decoded(read_bytes(path))
     except (OSError, UnicodeError) as error:
@@ -253,8 +270,15 @@ def _once(path: Path, lines: dict[tuple[str, ...], int], line: int, *work: str) 
 def worksheet_times(
     sheet: Worksheet, students: Mapping[str, str], exercise: str, zone: dt.tzinfo
 ) -> list[SubmittedAt]:
-    """The times of a worksheet, by participant's number, in the zone of the deadline, as Moodle writes
-    none; a UsageError if one cannot be read."""
+    """The times of a worksheet.
+
+    Args:
+        students: participant's number -> student.
+        zone: that of the deadline: Moodle writes none.
+
+    Raises:
+        UsageError: a time cannot be read.
+    """
     found = []
     for key, words in sheet.times.items():
         if key in students:

@@ -21,7 +21,12 @@ _IDS = ("canvas_id", "sis_user_id", "moodle_key", "login", "email")
 
 @dataclass
 class Merged:
-    """A roster that took another's place, the students it does not have, and the scores that it changes."""
+    """A roster that took the place of another.
+
+    Attributes:
+        dropped: students of the earlier roster that the new file does not have.
+        moved: the scores that it changes.
+    """
 
     roster: Roster
     dropped: list[str] = field(default_factory=list)
@@ -31,8 +36,9 @@ class Merged:
 def merged(results: Results, new: Roster, *, lasting: bool = False) -> Merged:
     """The new roster, completed from the one of the results.
 
-    ``lasting``: it is to be stored. A Moodle worksheet's numbers are those of one assignment, and do not
-    take the place of what a student is known by in Moodle.
+    Args:
+        lasting: it is to be stored. A Moodle worksheet's numbers are those of one assignment, and do not take
+            the place of what a student is known by in Moodle.
     """
     old, graded = results.roster, results.present()
     if old is None:

@@ -101,9 +101,15 @@ class Column:
 
 @dataclass
 class Roster:
-    """A class list: the rows, in the order of the file; the file and its headings, if it is not the one in
-    a gradebook; the heading of each of our columns that it has; and the columns of Canvas' gradebook, by
-    the id of the assignment."""
+    """A class list.
+
+    Attributes:
+        people: the rows, in the order of the file.
+        file: where it was read; empty if it is the one in a gradebook.
+        headings: of that file, if it is known.
+        columns: the heading of each of our columns that it has.
+        assignments: the columns of Canvas' gradebook, by the id of the assignment.
+    """
 
     people: tuple[Person, ...]
     file: str = ""
@@ -219,7 +225,11 @@ def _key(column: str, value: str) -> str:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a roster; a UsageError that names the row if it is none."""
+    """Read a roster.
+
+    Raises:
+        UsageError: it cannot be read or is not a roster; the message names the row.
+    """
     reader = csv_reader(read_text(path))
     try:
         headings = headings_of(reader)

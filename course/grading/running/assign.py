@@ -37,7 +37,12 @@ class Unsettled:
 
 @dataclass(frozen=True)
 class Assignment:
-    """A file to be assigned to a student, by its name as it was handed in; or a member of an archive."""
+    """A file to be assigned to a student.
+
+    Attributes:
+        name: of the file as it was handed in.
+        member: in the archive at ``path``; empty for the file itself.
+    """
 
     student: str
     exercise: str
@@ -79,9 +84,14 @@ def proposals(results: Results) -> list[Assignment]:
 def named(results: Results, student: str, file: str, exercise: str | None) -> Assignment:
     """The assignment that an instructor means.
 
-    The file is a name in the list of unsettled cases or in the student's folder, or a path; a slash leads
-    into an archive. The exercise need not be said where the unsettled case has one, or the course has only
-    one. NotFoundError: no such student, exercise or file. UsageError: the exercise is not clear.
+    Args:
+        file: a name in the list of unsettled cases or in the student's folder, or a path; a slash leads
+            into an archive.
+        exercise: None where the unsettled case has one, or the course has only one.
+
+    Raises:
+        NotFoundError: no such student, exercise or file.
+        UsageError: the exercise is not clear.
     """
     student = results.called(student)
     must_have(results, student)
@@ -162,11 +172,16 @@ def assign(
     at_least: str = "L2",
     accepted: str = "",
 ) -> list[Assigned]:
-    """Accept files as submissions, and grade them with the graders of the run, in a gradebook opened for
-    writing.
+    """Accept files as submissions, and grade them with the graders of the run.
 
-    The protection is as in ``Terms``, ``accepted`` as in ``RerunOptions``. UngradableError: a file cannot
-    be read. UsageError: there is no reason, or the run's graders are not this checkout's.
+    Args:
+        results: over a gradebook opened for writing.
+        level, at_least: as in ``Terms``.
+        accepted: as in ``RerunOptions``.
+
+    Raises:
+        UngradableError: a file cannot be read.
+        UsageError: there is no reason, or the run's graders are not this checkout's.
     """
     reason = given_reason(reason, "An assignment", "it is kept with the result")
     book, options = results.book, results.book.run_options()

@@ -43,8 +43,12 @@ _TICK_S = 0.5
 
 @dataclass(frozen=True)
 class Graded:
-    """One entry and the verdict on it; the version of the graders that judged, by their own account, and by
-    check the functions that it used, where the entry asks for that."""
+    """One entry and the verdict on it.
+
+    Attributes:
+        version: of the graders that judged it, by their own account; empty where none did.
+        asked: by check, the functions that it used, where the entry asks for that.
+    """
 
     entry: Entry
     verdict: Verdict
@@ -53,8 +57,14 @@ class Graded:
 
 
 def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> Iterator[Graded]:
-    """Verdicts on all entries that have a submission or a problem, in the order of arrival, by a snapshot
-    that is unpacked here; a CourseError if no grader can work at all (protection level, content)."""
+    """Verdicts on all entries that have a submission or a problem, in the order of arrival.
+
+    Args:
+        terms: which snapshot judges, and how; it must be unpacked here.
+
+    Raises:
+        CourseError: no grader can work here at all (protection level, content).
+    """
     with Graders(terms, graders) as those:
         yield from those.grade(entries)
 
@@ -88,7 +98,11 @@ class WarmGrader:
         self._over = False
 
     def answer(self, job: Job) -> Answer:
-        """The grader's answer; an empty one if this submission killed every grader it was given to."""
+        """The grader's answer; an empty one if this submission killed every grader it was given to.
+
+        Raises:
+            InternalError: no grader can be started here.
+        """
         for _ in range(MAX_TRIES):
             answer = _answer_to(job, self._said(self._process or self._started(), job))
             if answer is not None:
@@ -158,8 +172,12 @@ class WarmGrader:
 
 
 class Graders:
-    """Grader processes of this machine, each started when there is work for it; they stay warm from one class
-    to the next."""
+    """Grader processes of this machine; they stay warm from one class to the next.
+
+    Args:
+        terms: as for ``grade_all``.
+        graders: processes, at most; each is started when there is work for it.
+    """
 
     def __init__(self, terms: Terms, graders: int) -> None:
         self._frozen = in_use(terms.graders)

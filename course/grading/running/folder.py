@@ -72,7 +72,12 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
 
 
 def make_folder(out: Path, *, exist_ok: bool = True) -> None:
-    """Make a folder for a gradebook, and those above it; FileExistsError if it should not be there yet."""
+    """Make a folder for a gradebook, and those above it.
+
+    Raises:
+        FileExistsError: it is there, and should not be.
+        MissingCapabilityError: it cannot be made.
+    """
     try:
         out.mkdir(parents=True, exist_ok=exist_ok)
     except FileExistsError:
@@ -101,8 +106,11 @@ def export_all(out: Path, results: Results) -> None:
 
 @contextlib.contextmanager
 def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
-    """The results in the folder of a grading run. For writing, the gradebook is locked; at the end the files
-    beside it are written anew, and a backup."""
+    """The results in the folder of a grading run.
+
+    Args:
+        writing: lock the gradebook; at the end write the files beside it anew, and a backup.
+    """
     with Gradebook(out / BOOK, writing=writing) as book:
         yield Results(book)
         if writing:
@@ -146,8 +154,11 @@ def remember(book: Gradebook, new: Roster) -> Merged:
 def note_looked(
     book: Gradebook, exercises: Iterable[str], read: set[str], others: set[str], *, named: bool
 ) -> None:
-    """Note that a run looks for these exercises: in all of a class, or without the others who have a folder
-    in it."""
+    """Note that a run looks for these exercises: in all of a class, or in a part of it.
+
+    Args:
+        others: students with a folder that this run leaves aside.
+    """
     looked = book.looked()
     if looked is None:
         known = (*book.exercise_ids(), *(one.id for one in book.exercises()))

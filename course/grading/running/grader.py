@@ -35,15 +35,25 @@ _MOST_OPEN = 10
 
 
 class Config(msgspec.Struct, frozen=True):
-    """A grader's settings; ``processor`` is a number that picks the one to stay on."""
+    """A grader's settings.
+
+    Attributes:
+        processor: number that picks the processor to stay on.
+    """
 
     terms: Terms
     processor: int
 
 
 class Job(msgspec.Struct, frozen=True):
-    """One submission to grade, by this version of the graders, or the one here; of its checks ``only``
-    some, with those they require, or all. ``number`` is drawn at random, so that only the grader knows it."""
+    """One submission to grade.
+
+    Attributes:
+        version: the ``grader_version`` that must grade it; empty takes the one here.
+        only: checks to run, with those they require; empty runs all.
+        asks: which functions each check used is to be told, too.
+        number: drawn at random for each job, so that only the grader knows it.
+    """
 
     exercise: str
     files: dict[str, bytes]
@@ -54,9 +64,14 @@ class Job(msgspec.Struct, frozen=True):
 
 
 class Answer(msgspec.Struct, frozen=True):
-    """The verdict on the job of that number, or why this grader can give none; the digest of the graded
-    content and the version that judged, computed by the grader itself; by check, the functions used, if
-    the job asks for them."""
+    """The verdict on a job, or why this grader can give none.
+
+    Attributes:
+        number: of the job it answers.
+        sha256: digest of the graded content, computed by the grader itself.
+        version: of the graders that judged, computed by the grader itself.
+        asked: by check, the functions of the submission that it used, if the job asks for that.
+    """
 
     verdict: Verdict | None = None
     error: Problem | None = None

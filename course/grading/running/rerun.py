@@ -114,10 +114,15 @@ class Regraded(msgspec.Struct, frozen=True):
 def rerun(
     results: Results, catalog: Catalog, options: RerunOptions, *, grade: GradeAll = grade_all
 ) -> Regraded:
-    """Regrade the submissions in a gradebook, which is opened for writing, unless it is a dry run.
+    """Regrade the submissions in a gradebook.
 
-    MissingCapabilityError: there are no hidden graders here, or no sufficient protection. NotFoundError:
-    the gradebook has no such graders. IntegrityError: a submission in it is damaged.
+    Args:
+        results: over a gradebook opened for writing, unless it is a dry run.
+
+    Raises:
+        MissingCapabilityError: there are no hidden graders here, or no sufficient protection.
+        NotFoundError: the gradebook has no such graders.
+        IntegrityError: a submission in the gradebook is damaged.
     """
     snapshot, recorded = _graders(results, catalog, options)
     changes: list[Change] = []

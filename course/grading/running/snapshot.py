@@ -48,10 +48,13 @@ FOREIGN = "They are programs, and would run as you, outside any sandbox."
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Graders, frozen at one moment: as a zip, and unpacked; known by a digest of the names and contents
-    in it.
+    """Graders, frozen at one moment.
 
-    ``origins``: where its files of the course's content were; empty for one that was stored.
+    Attributes:
+        sha256: digest of the names and contents in it.
+        packed: its content, as a zip.
+        files: the same, unpacked.
+        origins: where its files of the course's content were; empty for one that was stored.
     """
 
     sha256: str
@@ -61,7 +64,11 @@ class Snapshot:
 
     @classmethod
     def take(cls, content: Content, exercises: Collection[str] | None = None) -> Snapshot:
-        """The graders as they are now, of all exercises and the quiz, or of some exercises alone."""
+        """The graders as they are now.
+
+        Args:
+            exercises: ids, where no others and no quiz are to be graded; None for all.
+        """
         buffer, paths = io.BytesIO(), dict(grader_files(content, exercises))
         files = {name: path.read_bytes() for name, path in paths.items()}
         files[f"content/{NAMES}"] = _names(content)
@@ -73,7 +80,11 @@ class Snapshot:
 
     @classmethod
     def of(cls, packed: bytes, sha256: str) -> Snapshot:
-        """A stored snapshot, opened; an IntegrityError if it has changed since."""
+        """A stored snapshot, opened.
+
+        Raises:
+            IntegrityError: it has changed since.
+        """
         files = dict(_members(packed))
         if _digest(files) != sha256:
             raise _damaged(sha256)
@@ -118,9 +129,15 @@ def fresh(content: Content) -> Snapshot:
 def kept(book: Gradebook, sha256: str | None, content: Content, accepted: str = "") -> Snapshot | None:
     """The snapshot of that digest in a gradebook; None where it has none.
 
-    It is code, which a grader runs as the user who grades. So it must be this checkout's own, or
-    ``accepted`` by its digest, whoever made it. IntegrityError: it is damaged. ForeignGradersError: it is
-    neither, nor has this checkout begun a run with it.
+    It is code, which a grader runs as the user who grades. So it must be this checkout's own, or accepted.
+
+    Args:
+        content: what this checkout grades with.
+        accepted: the digest of a snapshot that may run, whoever made it.
+
+    Raises:
+        IntegrityError: it is damaged.
+        ForeignGradersError: it is neither, nor has this checkout begun a run with it.
     """
     packed = book.snapshot(sha256) if sha256 else None
     if not packed or not sha256:
@@ -189,8 +206,12 @@ def _damaged(sha256: str) -> IntegrityError:
 
 @dataclass(frozen=True)
 class Unpacked:
-    """A snapshot that is unpacked: its folder has ``course``, importable, and ``content``, whose catalog is
-    here."""
+    """A snapshot that is unpacked.
+
+    Attributes:
+        folder: holds ``course``, importable, and ``content``.
+        catalog: the course in it.
+    """
 
     snapshot: Snapshot
     folder: Path
@@ -216,8 +237,12 @@ def in_use(sha256: str) -> Unpacked | None:
 
 @contextlib.contextmanager
 def frozen(snapshot: Snapshot, exercises: Collection[str] | None = None) -> Iterator[Unpacked]:
-    """Unpack a snapshot for as long as it is needed; graders find it by its digest in their terms. Where
-    some exercises alone are to be graded, of the others there is only what declares them."""
+    """Unpack a snapshot for as long as it is needed; graders find it by its digest in their terms.
+
+    Args:
+        exercises: ids, where no others are to be graded: of these there is only what declares them. None for
+            all.
+    """
     known = _in_use.get(snapshot.sha256)
     if known is not None:
         _unpack(snapshot, known.folder, exercises)

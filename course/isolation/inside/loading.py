@@ -107,8 +107,12 @@ def _not_declared(package: str, allowed: str) -> ImportNotDeclaredError:
 
 
 class Imports:
-    """Refuses top-level packages that are neither the standard library's nor allowed; of these the
-    sentence names the ``declared`` ones, as the others are files of the submission."""
+    """Refuses top-level packages that are neither the standard library's nor declared.
+
+    Args:
+        allowed: packages, and files of the submission, that may be imported.
+        declared: the packages, for the sentence.
+    """
 
     def __init__(self, allowed: frozenset[str], declared: frozenset[str]) -> None:
         self._allowed = allowed
@@ -152,10 +156,14 @@ _MOST_FAULTS = 20
 
 
 class Fault:
-    """What of a module was left out: the line on which it begins, what it would have defined, and why.
+    """What of a module was left out.
 
-    It is "syntax", "import", or "magic" for a line of IPython's; "absent" for an import that something
-    stands for.
+    Attributes:
+        stage: "syntax", "import", or "magic" for a line of IPython's; "absent" for an import that something
+            stands for.
+        error: why.
+        line: of the module, on which it begins.
+        names: what it would have defined.
     """
 
     def __init__(self, stage: str, error: BaseException, line: int, names: Collection[str]) -> None:
@@ -166,10 +174,17 @@ class Fault:
 
 
 class Loading:
-    """One module on its way, as far as it is loaded, and what was left out of it, in the order in which
-    that was found.
+    """One module on its way.
 
-    Where there are ``needed`` functions, only what they need is run.
+    Args:
+        source: its text.
+        main: its file's name.
+        imports: decides what it may import.
+        needed: functions; where there are any, only what they need is run. Empty runs all.
+
+    Attributes:
+        module: as far as it is loaded.
+        faults: what was left out of it, in the order in which that was found.
     """
 
     def __init__(self, source: str, main: str, imports: Imports, needed: Collection[str] = ()) -> None:

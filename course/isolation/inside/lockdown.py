@@ -213,8 +213,13 @@ def _allow(ruleset: int, path: str, access: int) -> None:
 
 
 def apply_limits(*, cpu_s: int, memory: int, file_size: int, descriptors: int) -> None:
-    """Hard limits of this process, in s, bytes and open files; soft and hard alike, since pid 1 of a
-    namespace ignores the soft signal."""
+    """Hard limits of this process; soft and hard alike, since pid 1 of a namespace ignores the soft signal.
+
+    Args:
+        cpu_s: seconds of CPU.
+        memory, file_size: bytes.
+        descriptors: open files.
+    """
     for kind, value in (
         (resource.RLIMIT_CPU, cpu_s),
         (resource.RLIMIT_AS, memory),
@@ -339,8 +344,11 @@ def allowed_calls(machine: str) -> dict[str, int]:
 
 
 def seccomp_program(machine: str = "") -> bytes:
-    """The filter as BPF, complete but for the worker's pid; built once, since building costs more than
-    using. It is a LockdownError where a machine's system calls are not listed here."""
+    """The filter as BPF, complete but for the worker's pid; built once, since building costs more than using.
+
+    Raises:
+        LockdownError: a machine whose system calls are not listed here.
+    """
     machine = machine or platform.machine()
     if machine not in _AUDIT_ARCH:
         raise LockdownError(0, f"no list of system calls for {machine}")

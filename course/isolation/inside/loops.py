@@ -52,8 +52,11 @@ def march(step: Any, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) ->
 
 
 def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
-    """The result of ``function`` for each list of arguments, copied at once, and the number of the first
-    that a later call changed; None if they all stayed."""
+    """The result of ``function`` for each list of arguments, copied at once.
+
+    Returns:
+        The values, and the number of the first that a later call changed; None if they all stayed.
+    """
     values: list[Any] = []
     record: list[Any] = []
     for args in calls:
@@ -66,8 +69,11 @@ def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
 def fold(function: Any, state: Any, calls: Iterable[list[Any]], keep: list[str] | None = None) -> list[Any]:
     """Pass the state through ``function(state, *args)``, once for each list of arguments.
 
-    The states, the first one included, and of dicts the keys to ``keep``; then the last of them whole,
-    else None.
+    Args:
+        keep: of states that are dicts, the keys to record.
+
+    Returns:
+        The states, the first one included. And with ``keep``, the last of them whole, else None.
     """
     record = [_snapshot(_part(state, keep))]
     for args in calls:

@@ -47,8 +47,14 @@ MERGE = ("<<<<<<<", "=======", ">>>>>>>")
 
 
 class Piece(NamedTuple):
-    """Some lines of a module that belong together: the line on which they begin, and their statements with
-    the module's lines. If they are no Python: why, and the names that they would define, by their look."""
+    """Some lines of a module that belong together.
+
+    Attributes:
+        line: of the module on which it begins, 1 first.
+        body: its statements, with the module's lines; empty if it is no Python.
+        error: why it is none.
+        names: what a piece that is no Python would define, by its look.
+    """
 
     line: int
     body: list[ast.stmt]
@@ -57,8 +63,11 @@ class Piece(NamedTuple):
 
 
 def parsed(text: str, line: int = 1) -> list[ast.stmt]:
-    """The statements of a text that begins on a line; of one that is ``UNREADABLE`` the error, with the
-    module's line."""
+    """The statements of a text that begins on a line.
+
+    Raises:
+        UNREADABLE: it is no Python; a SyntaxError's line is the module's.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about escapes in the student's strings
@@ -121,8 +130,11 @@ def defined_in(text: str) -> list[str]:
 
 
 def needed(statements: Sequence[ast.stmt], names: Iterable[str], always: Collection[int] = ()) -> list[int]:
-    """Indices of the statements that bind or change names, and of those that these need, in order;
-    ``always`` are indices of statements that count whether or not anything needs them."""
+    """Indices of the statements that bind or change names, and of those that these need, in order.
+
+    Args:
+        always: indices of statements that count whether or not anything needs them.
+    """
     binding: dict[str, list[int]] = {}
     for index, node in enumerate(statements):
         for name in bound(node):

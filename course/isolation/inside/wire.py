@@ -574,16 +574,24 @@ _NO_HEADER = bytes(HEADER.size)
 
 
 class Codec:
-    """Encodes and decodes frames for one side of one connection. ``names`` resolves callables, right-hand
-    sides and seeds; bytes are accepted by a worker alone, which gets the submission's files."""
+    """Encodes and decodes frames for one side of one connection.
+
+    Args:
+        names: resolves callables, right-hand sides and seeds; None refuses them.
+        accept_bytes: whether a bytes value may arrive (only a worker accepts it: the submission's files).
+    """
 
     def __init__(self, names: Names | None = None, *, accept_bytes: bool = False) -> None:
         self._names = names
         self._accept_bytes = accept_bytes
 
     def encode(self, kind: int, value: Any) -> bytearray:
-        """One frame; an UnsupportedValueError if something in ``value`` cannot cross, a TooMuchError if it
-        is too large."""
+        """One frame.
+
+        Raises:
+            UnsupportedValueError: something in ``value`` cannot cross.
+            TooMuchError: it is too large or too deep.
+        """
         parts: list[bytes | memoryview] = [_NO_HEADER]
         arrays = put(value, parts, self._names, MAX_DEPTH)
         frame = bytearray().join(parts)
@@ -594,8 +602,11 @@ class Codec:
         return frame
 
     def decode(self, body: bytes | memoryview) -> Any:
-        """The value of a frame's body (what follows the header); a WireError if it is malformed in any
-        way."""
+        """The value of a frame's body (what follows the header).
+
+        Raises:
+            WireError: the body is malformed in any way.
+        """
         try:
             value = quick(body)
             if value is not OTHER:

@@ -70,8 +70,11 @@ class CappedText(io.TextIOBase):
 
 
 class Worker:
-    """Answers one grader over one socket until the socket closes. Beside the standard library the
-    submission may import the packages of ``imports``."""
+    """Answers one grader over one socket until the socket closes.
+
+    Args:
+        imports: top-level packages the submission may import beside the standard library.
+    """
 
     def __init__(self, sock: socket.socket, imports: frozenset[str]) -> None:
         self._sock = sock

@@ -586,7 +586,11 @@ class Space:
 
 
 class Recorder:
-    """Copies states and contacts out after each step; appending costs no Python per body."""
+    """Copies states and contacts out after each step; appending costs no Python per body.
+
+    Args:
+        space: whose.
+    """
 
     def __init__(self, space: Space) -> None:
         self._space = space

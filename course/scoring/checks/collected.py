@@ -42,11 +42,13 @@ from course.scoring.verdict import Visibility
 
 
 def companion(exercise_id: str, module: str) -> ModuleType:
-    """A module that public and hidden checks of an exercise share:
-    ``exercises/<id>/checking/<module>.py``.
+    """A module that public and hidden checks of an exercise share: ``exercises/<id>/checking/<module>.py``.
 
     What the course itself asks for, ``questions`` and ``report``, lies beside the checks. It is loaded by
-    path from the course in use, once per process; FileNotFoundError if there is none.
+    path from the course in use, once per process.
+
+    Raises:
+        FileNotFoundError: the exercise has no such file.
     """
     return _load(companion_path(exercise_id, module), f"{exercise_id}_{module}")
 
@@ -112,15 +114,21 @@ def questions_of(exercise_id: str) -> ModuleType | None:
 
 
 def sibling(file: str, module: str) -> ModuleType:
-    """A module beside a file of checks, ``sibling(__file__, "bundles")``; FileNotFoundError if there is
-    none."""
+    """A module beside a file of checks: ``sibling(__file__, "bundles")``.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+    """
     path = Path(file).resolve()
     return _load(path.with_name(f"{module}.py"), f"{path.parent.name}_{module}")
 
 
 def not_importable(error: BaseException, file: Path) -> ContentError:
-    """The fault of a course's file, of ``file`` if nothing tells another, that raises while a check file
-    is imported."""
+    """The fault of a course's file that raises while a check file is imported.
+
+    Args:
+        file: the one to name where the error itself names none of the course's.
+    """
     while isinstance(error, pytest.Collector.CollectError) and error.__cause__ is not None:
         error = error.__cause__
     if isinstance(error, ContentError):
@@ -165,8 +173,13 @@ _HOME_ONLY = re.compile(r" \(no points here[^)]*\)$")
 
 @dataclass(frozen=True)
 class Check:
-    """One check, as its function declares it: by its name without ``test_``, with the first line of its
-    docstring as title, and the checks that must have passed before."""
+    """One check, as its function declares it.
+
+    Attributes:
+        id: the function's name without ``test_``.
+        title: first line of its docstring, without a note on points.
+        requires: ids of the checks that must have passed before.
+    """
 
     id: str
     title: str
@@ -177,8 +190,12 @@ class Check:
 
 
 class CollectedChecks:
-    """The checks of one exercise: of these files, public ones first. ``draws``: those draw their inputs
-    too, as in a grading run."""
+    """The checks of one exercise.
+
+    Args:
+        files: check files with the visibility of what is in them, public first.
+        draws: public checks draw their inputs too, as in a grading run.
+    """
 
     def __init__(self, files: list[tuple[Path, Visibility]], *, draws: bool = False) -> None:
         self._plugin = CheckPlugin(draws=draws)

@@ -30,8 +30,11 @@ _LARGEST = 1e300  # JSON has no infinity
 
 
 def fingerprint(answers: Answers) -> tuple[float, ...]:
-    """``SUMS`` numbers for the answers to the questions of a task; of an exception, ``{"raised": name}``
-    is the answer."""
+    """``SUMS`` numbers for the answers to the questions of a task.
+
+    Args:
+        answers: plain values, one for each question; an exception's class name as ``{"raised": name}``.
+    """
     numbers = numbers_of(answers)[:_MOST]
     weights = np.random.default_rng(20260).uniform(-1.0, 1.0, (SUMS, _MOST))[:, : len(numbers)]
     # Large values count by their logarithm, so that a path that diverges is still compared digit by digit.
@@ -47,8 +50,11 @@ def numbers_of(answers: Answers) -> np.ndarray[Any, Any]:
 
 
 def read(answer: Any, reader: Callable[[Any], Any] | None) -> Any:
-    """The part of an answer that counts, by ``READ`` of the exercise's questions; one that it cannot read
-    counts like an exception."""
+    """The part of an answer that counts: the result of the exercise's reader.
+
+    Args:
+        reader: ``READ`` of the exercise's questions; an answer that it cannot read counts like an exception.
+    """
     if reader is None or (isinstance(answer, dict) and answer.keys() == {"raised"}):
         return answer
     try:

@@ -54,8 +54,12 @@ _PLACES = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
 def likeness(actual: Any, expected: Any, given: Mapping[str, Any] | None = None) -> str:
-    """One sentence on what two plain values have in common, and one with the inputs; "" if nothing worth
-    saying."""
+    """One sentence on what two values have in common; "" if nothing worth saying.
+
+    Args:
+        actual, expected: plain values, as a finding has them.
+        given: the inputs by name, as it has them.
+    """
     if isinstance(actual, dict) and isinstance(expected, dict) and actual.keys() == expected.keys():
         actual, expected = list(actual.values()), list(expected.values())
         if len(actual) == 1:
@@ -70,8 +74,11 @@ def likeness(actual: Any, expected: Any, given: Mapping[str, Any] | None = None)
 
 
 def of_cases(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
-    """What all wrong results of a check have in common, which one may have by chance; "" if nothing. Of
-    each case actual value, expected value and inputs, the one first that is shown."""
+    """What all wrong results of a check have in common, which one may have by chance; "" if nothing.
+
+    Args:
+        cases: actual value, expected value and inputs of each, the one first that is shown.
+    """
     said = [likeness(*case) for case in cases]
     here = "Here your result is "
     if len(cases) < 2 or not said[0].startswith(here):
@@ -374,7 +381,10 @@ def _around(parts: Sequence[ast.AST], inner: Collection[ast.AST]) -> set[ast.AST
 
 def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
     """The advice where a function gives None instead of a value; "" if its text does not tell more.
-    ``name`` is the result, or an entry of the dict that is returned, as the finding calls it."""
+
+    Args:
+        name: what is None, as the finding calls it: the result, or an entry of the dict that is returned.
+    """
     function = next(iter(functions_of(source, task)), None)
     if function is None:
         return ""

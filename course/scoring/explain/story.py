@@ -99,8 +99,13 @@ class Words:
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """One failed check of a task: its probe's diagnosis, whether all compared values were finite, and
-    whether its own probe was asked, on the numbers that it shows."""
+    """One failed check of a task.
+
+    Attributes:
+        guess: the probe's diagnosis; None if it has none.
+        finite: False if a compared value was nan or infinite.
+        looked: its own probe was asked, on the numbers that it shows.
+    """
 
     check: str
     guess: Diagnosis | None
@@ -110,9 +115,13 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """The diagnosis of a task's failed checks, if one is recognised. Checks keep their ``own``: facts that
-    they saw directly. ``bare`` ones saw another mistake, or not this consequence, so that it is not said
-    of them."""
+    """The diagnosis of a task's failed checks.
+
+    Attributes:
+        diagnosis: the mistake; None if none is recognised.
+        own: ids of checks that keep their own diagnosis: facts that they saw directly.
+        bare: ids of checks that it is not said of: they saw another mistake, or not this consequence.
+    """
 
     diagnosis: Diagnosis | None
     own: frozenset[str]
@@ -250,8 +259,12 @@ _Kind = TypeVar("_Kind")
 
 
 class Row(msgspec.Struct, frozen=True, array_like=True):
-    """One wrong program: the codes of its mistakes, and its fingerprint; or the answers themselves where a
-    task is compared within a tolerance."""
+    """One wrong program: the codes of its mistakes, and its answers.
+
+    Attributes:
+        codes: one for each mistake.
+        sums: its fingerprint, or the answers themselves where a task is compared within a tolerance.
+    """
 
     codes: tuple[str, ...]
     sums: tuple[float, ...]
@@ -283,7 +296,11 @@ def table_path(folder: Path) -> Path:
 
 
 def read_table(folder: Path) -> Table | None:
-    """The table of the exercise in this folder; None if it has none, ContentError if it is damaged."""
+    """The table of the exercise in this folder; None if it has none.
+
+    Raises:
+        ContentError: it is damaged.
+    """
     path = table_path(folder)
     if not path.is_file():
         return None

@@ -52,11 +52,13 @@ _STRANGE = (TypeError, ValueError, ArithmeticError, LookupError, AttributeError,
 
 
 class Explainer:
-    """Diagnoses of one exercise. Without a table of its mistakes, each check keeps its own diagnosis.
+    """Diagnoses of one exercise. Without a table, each check keeps its own diagnosis.
 
-    Its questions are those of ``answer_numbers``. Where one function returns several things, ``PARTS``
-    names the thing that each check is about: a mistake in one says nothing about another, so each has its
-    own story.
+    Args:
+        table: what is known about its mistakes.
+        questions: its ``questions.py``; see ``answer_numbers``. Where one function returns several things,
+            ``PARTS`` names the thing that each check is about. A mistake in one thing says nothing about
+            another, so each thing has its own story.
     """
 
     def __init__(self, table: Table, questions: ModuleType) -> None:
@@ -77,8 +79,12 @@ class Explainer:
         heard: Mapping[str, Past] = types.MappingProxyType({}),
         again: Again | None = None,
     ) -> None:
-        """Put the story of each task into the results of its failed checks. Of these, ``heard`` has the
-        CPU time that they took, s, and the calls that were listened to."""
+        """Put the story of each task into the results of its failed checks.
+
+        Args:
+            heard: of failed checks, the CPU time they took, s, and the calls that were listened to.
+            again: asks the submission again, in workers of its own.
+        """
         fine = {Status.PASS, Status.SKIP}
         wrong = {result.task for result in results.values() if result.status not in fine}
         callers = calls_between(source, tasks_asked(self._questions))
@@ -235,8 +241,11 @@ _SAME = {"rtol": 1e-9, "atol": 1e-12}
 
 
 class Again:
-    """Asks a submission again, in two workers of its own that all of its tasks share; ``anew`` loads it in
-    one."""
+    """Asks a submission again, in two workers of its own that all of its tasks share.
+
+    Args:
+        anew: loads the submission in another worker.
+    """
 
     def __init__(self, anew: Callable[[], RemoteSubmission]) -> None:
         self._anew = anew
@@ -251,10 +260,14 @@ class Again:
             self._workers.popitem()[1].close()
 
     def depends_on_the_past(self, heard: Sequence[Heard], task: str, patience: float) -> bool:
-        """Whether calls give something else in the opposite order, each time within so much CPU time, s.
+        """Whether calls give something else in the opposite order.
 
-        A function that draws numbers of its own, or measures a time, gives something else every time: it
-        is asked twice, and nothing is said of it.
+        A function that draws numbers of its own, or measures a time, gives something else every time: it is
+        asked twice, and nothing is said of it.
+
+        Args:
+            heard: calls of functions, in order.
+            patience: seconds of CPU time for each of the two times.
         """
         asked = heard[: -_MOST - 1 : -1]
         first = self._values(0, asked, task, patience)

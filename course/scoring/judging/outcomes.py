@@ -69,11 +69,13 @@ def told_more(
     args: tuple[Any, ...] | None = None,
     fact: str | None = None,
 ) -> CheckResult:
-    """The result of a failed check with what its student's code, or the numbers below it, show beyond
-    doubt.
+    """The result of a failed check with what its student's code, or the numbers below it, show beyond doubt.
 
-    Only where no mistake is named. Numbers are compared where they are shown, so of public checks alone;
-    ``fact`` is what several of the check have in common, and ``args`` are those of the call that raised.
+    Only where no mistake is named. Numbers are compared where they are shown, so of public checks alone.
+
+    Args:
+        args: of the call that raised.
+        fact: what several numbers of the check have in common, in the place of what one shows.
     """
     public = judged.visibility is Visibility.PUBLIC
     if args and judged.input is None and public:
@@ -96,9 +98,12 @@ def told_more(
 
 
 def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
-    """The finding where the check's own code raised an exception on what the function returned that
-    returned last. ``proven``: the check passes the model solution, so it is the value that is out of the
-    ordinary."""
+    """The finding where the check's own code raised an exception on the submission's value.
+
+    Args:
+        returned: name and value of the function that returned last; None if none did.
+        proven: the same check passes the model solution, so it is the value that is out of the ordinary.
+    """
     what = f"what `{returned[0]}` returned: {kind_of(returned[1])}" if returned else "this submission"
     message = f"This check could not judge {what}."
     advice = (
@@ -136,8 +141,11 @@ def load_problem(refused: LoadRefusedError, places: Places, exercise: str) -> Pr
 
 
 def left_out_notes(remote: RemoteSubmission, places: Places, tasks: Collection[str]) -> list[str]:
-    """What of a file was left out so that the rest could be checked, a sentence each. Of a task that is no
-    Python its checks tell."""
+    """What of a file was left out so that the rest could be checked, a sentence each.
+
+    Args:
+        tasks: the exercise's functions: of one that is no Python its checks tell.
+    """
     notes = []
     missing = frozenset(tasks) - frozenset(remote.functions)
     if remote.without is not None:

@@ -197,7 +197,11 @@ class GradingSession:
 
     def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
         """The result of ``use`` on a submission, loaded as for a check; one deadline applies to all of it.
-        UngradableError if it cannot be loaded, InternalError if the sandbox broke."""
+
+        Raises:
+            UngradableError: it cannot be loaded.
+            InternalError: the sandbox broke.
+        """
         with pinned_to(self._processor):
             try:
                 remote = self._load(submission)
@@ -381,8 +385,11 @@ class GradingSession:
 
 
 def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tuple[Path, Visibility]]:
-    """The files whose checks a scope runs; MissingCapabilityError where hidden checks or model solutions
-    are not here."""
+    """The files whose checks a scope runs.
+
+    Raises:
+        MissingCapabilityError: the full scope needs hidden checks and model solutions; one is not here.
+    """
     files = [(exercise.checks_path, Visibility.PUBLIC)]
     if scope == "full":
         _, graders = catalog.content.instructors()
@@ -457,8 +464,13 @@ def has_report(exercise: Exercise) -> bool:
 
 
 def report_of(exercise: Exercise, catalog: Catalog, submission: Submission) -> Report:
-    """The report on a submission. NotFoundError: the exercise has none; UngradableError: the submission
-    cannot be loaded, or ended it; MissingCapabilityError: none can be run on this machine."""
+    """The report on a submission.
+
+    Raises:
+        NotFoundError: the exercise has no report.
+        UngradableError: the submission cannot be loaded, or ended the report.
+        MissingCapabilityError: no submission can be run on this machine.
+    """
     if not has_report(exercise):
         message = f"The exercise {exercise.id} has no report."
         advice = f"See what its checks say: course check {exercise.id}"

@@ -13,8 +13,13 @@ from course.scoring.verdict import Places
 
 @dataclass(frozen=True)
 class Submission:
-    """One student's submission for one exercise: its files, exactly as handed in; how its lines are named,
-    if not as the module's; and what was left out or assumed, a sentence each."""
+    """One student's submission for one exercise.
+
+    Attributes:
+        files: file name to content, exactly as handed in.
+        places: how its lines are named; None if the student wrote the module itself.
+        notes: parts left out, and assumptions, one sentence each.
+    """
 
     files: Mapping[str, bytes]
     places: Places | None = None

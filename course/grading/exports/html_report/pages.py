@@ -143,7 +143,13 @@ _LONGEST_NAME = 120
 
 
 def render(template: str, **words: Any) -> str:
-    """A page. All text in it is literal: it contains no markup, and cannot hide or reorder other text."""
+    """A page.
+
+    Args:
+        template: its name, without the end ``.html.j2``.
+        words: what it shows. All text is literal: it contains no markup, and cannot hide or reorder other
+            text.
+    """
     return _environment().get_template(f"{template}.html.j2").render(words)
 
 
@@ -272,8 +278,12 @@ _LEVELS = {
 
 
 def class_page(results: Results, tally: Tally, links: Mapping[str, str], index: str) -> str:
-    """The whole page; ``links`` has the address of each student's page, ``index`` that of the list of
-    students."""
+    """The whole page.
+
+    Args:
+        links: student -> address of the student's page.
+        index: address of the list of students.
+    """
     begun = [item for item in tally.exercises.values() if item.results]
     sections = [
         ("exercises", "Exercises"),
@@ -559,8 +569,14 @@ _PAGE = re.compile(r"[1-9][0-9]*\.html")
 
 
 def write_html(target: Path, results: Results, options: ExportOptions) -> Written:
-    """The page about the class, at ``target`` or in that folder, the list of students, and the students'
-    pages beside it; a UsageError if files are in the way that no export to this page made."""
+    """The page about the class, the list of students, and the students' pages beside it.
+
+    Args:
+        target: the page (``.html``), or the folder it goes into.
+
+    Raises:
+        UsageError: files are in the way that no export to this page made.
+    """
     selection = select(results, options)
     page = target.suffix.lower() in {".html", ".htm"} and not target.is_dir()
     path = target if page else target / "report.html"
@@ -597,10 +613,15 @@ def _link(path: Path) -> str:
 def write_pages(
     path: Path, results: Results, found: Iterable[Effective], exercises: Sequence[str]
 ) -> list[Path]:
-    """Write everything: ``path`` is the page about the class, and the rest lies beside it.
+    """Write everything.
 
-    The results are ordered by student; those that have only an override may come at the end. What is
-    written is the class page, the list of students as a page and as a table, and the folder of pages.
+    Args:
+        path: of the page about the class; the rest lies beside it.
+        found: results ordered by student; those that have only an override may come at the end.
+        exercises: ids, in the order they are shown.
+
+    Returns:
+        The written paths: the class page, the list of students as a page and as a table, the folder of pages.
     """
     noted = {item.id: item for item in results.exercises()}
     order = {name: at for at, name in enumerate(exercises)}

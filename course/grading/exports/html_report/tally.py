@@ -22,8 +22,12 @@ _ADVICES = 20  # texts of advice that are counted per diagnosis
 
 @dataclass
 class CheckTally:
-    """How a check went, over all graded submissions that ran it; ``latest`` is one of its results, for its
-    words. A function that was not begun counts as "unwritten"."""
+    """How a check went, over all graded submissions that ran it.
+
+    Attributes:
+        latest: one of its results, for its words.
+        statuses: number of submissions by how it ended; "unwritten" where its function was not begun.
+    """
 
     latest: CheckResult
     statuses: Counter[str] = field(default_factory=Counter)
@@ -157,8 +161,12 @@ class ExerciseTally:
 
 
 class CappedList:
-    """A list that shows a limited number of rows and counts all: those for which ``by`` is largest, the
-    largest first, or those that came first."""
+    """A list that shows a limited number of rows and counts all.
+
+    Args:
+        most: how many it shows.
+        by: shows those for which this is largest, the largest first; those that came first if None.
+    """
 
     def __init__(self, most: int = MOST_ROWS, by: Callable[[Effective], float] | None = None) -> None:
         self._most, self._by = most, by
@@ -182,11 +190,16 @@ class CappedList:
 
 
 class Tally:
-    """A class, counted over some exercises in the order of the course.
+    """A class, counted.
 
-    ``troubled`` are the results without a grade, for any reason, with or without an instructor's score;
-    ``reasons`` their number by exercise, state and code. ``untimed`` have no trusted time, and ``flagged``
-    are called late by the download, without saying by how much.
+    Args:
+        exercises: to count, in the order of the course.
+
+    Attributes:
+        troubled: without a grade, for any reason, with or without an instructor's score.
+        reasons: number of those by exercise, state and code.
+        untimed: number of results without a trusted submission time.
+        flagged: number of results that the download calls late, without saying by how much.
     """
 
     def __init__(self, exercises: Iterable[GradedExercise]) -> None:

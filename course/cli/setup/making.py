@@ -211,6 +211,11 @@ def init(
         catalog_of(workspace)
         console.line(f"{root} is a workspace already" + ("." if kinds else "; nothing was changed."))
     written = write_surroundings(root, kinds, requirement)
+    if requirement is None and {"github", "devcontainer"} & set(kinds) and not any(root.glob(WHEELS)):
+        console.note(
+            "It installs the course from a wheel in wheels/, and none is there yet: put the one that your "
+            "instructor handed out there, and commit it."
+        )
     if "github" in kinds and not (root / ".git").exists():
         console.note("GitHub reads workflows in the top folder of a repository only.")
     step = "course go"

@@ -119,7 +119,14 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         step = NextStep(f"course lesson {exercise.lesson}")
         return replace(reply, reason="exhausted", message=message, next=step)
     here.record("hint", exercise.id, {"task": task, "index": following, "fingerprint": last.fingerprint})
-    return replace(reply, given=True, hint=entry.said(following, failed))
+    codes = {code for code, _ in failed if code}
+    about = {code for fitting in entry.fits.values() for code in fitting}
+    message = (
+        "No hint is about the mistake that this check named; this one is about the function as a whole."
+        if codes and not codes & about
+        else ""
+    )
+    return replace(reply, given=True, hint=entry.said(following, failed), message=message)
 
 
 def _task(exercise: Exercise, history: History, wanted: str | None) -> str | None:

@@ -159,6 +159,15 @@ def test_init_writes_what_is_asked_for(course, tmp_path):
     assert container["postCreateCommand"] == "python -m pip install wheels/*.whl"
 
 
+def test_init_says_that_the_wheel_it_installs_from_is_not_there_yet(course, tmp_path):
+    said = "none is there yet: put the one that your instructor handed out there, and commit it"
+    told = [course("init", "mine", "--with", kinds) for kinds in ("github", "devcontainer", "vscode")]
+    assert [said in " ".join(ran.out.split()) for ran in told] == [True, True, False]
+    (tmp_path / "mine" / "wheels").mkdir()
+    (tmp_path / "mine" / "wheels" / "course-2.0.0-py3-none-any.whl").touch()
+    assert said not in " ".join(course("init", "mine", "--with", "github").out.split())
+
+
 @pytest.mark.parametrize("wanted", ["https://example.org/a b.whl#sha256=1", "it's \"quoted\": $HOME, 'x'"])
 def test_a_requirement_reaches_pip_as_it_is(course, tmp_path, wanted):
     assert course("init", "mine", "--with", "github,devcontainer", "--requirement", wanted).code == 0

@@ -59,6 +59,17 @@ def test_a_hint_fits_what_the_check_thinks_is_wrong(hint, students_content):
     assert hint("wrong again", "RIGHT")["hint"] == hint()["hint"] == "What is a number added to itself?"
 
 
+def test_a_hint_that_is_not_about_the_named_mistake_says_so(hint, students_content):
+    hints = students_content / "exercises" / "doubling" / "exercise.toml"
+    whole, _, fitting = hints.read_text().partition("SQUARES_INSTEAD")
+    hints.write_text(f"{whole}NOT_RIGHT{fitting}")
+    assert hint("wrong", "RIGHT")["message"] == ""
+    hints.write_text(f"{whole}ANOTHER{fitting}")
+    assert hint("wrong again", "RIGHT")["message"].startswith(
+        "No hint is about the mistake that this check named"
+    )
+
+
 def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(hint, students_content):
     hints = students_content / "exercises" / "doubling" / "exercise.toml"
     sentences = (

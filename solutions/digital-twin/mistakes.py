@@ -9,6 +9,35 @@ from course.scoring import kit
 
 mistakes = Mistakes()
 
+#: A twin without a filter: it predicts in one step, and adds fixed shares of the surprise.
+_OBSERVER = """
+    dt = t_measured - twin["t"]
+    if dt < 0:
+        return dict(twin)
+    x, v, b = twin["position"], twin["speed"], twin["friction"]
+    a = twin["drive"] - b * v
+    x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
+    surprise = z - x
+    x, v = x + 0.3 * surprise, v + 0.3 * surprise
+    b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
+    return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b, "memory": {}}
+"""
+#: What makes it predict in steps of a hundredth of a second.
+_IN_PARTS = {
+    "    a =": "    n = max(1, math.ceil(dt / 0.01))\n    h = dt / n\n    for _ in range(n):\n        a =",
+    "x, v = x + dt * v + dt * dt / 2 * a, v + dt * a": "    x, v = x + h * v + h**2 / 2 * a, v + h * a",
+}
+
+
+def _observer(changed):
+    """That twin with some texts changed."""
+    text = _OBSERVER
+    for old, new in changed.items():
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
+
+
 mistakes(
     "TRUNCATES_TOWARD_ZERO",
     "The fraction is cut off, towards zero, so the count around zero is twice as wide as any other.",
@@ -21,12 +50,7 @@ mistakes(
     "The counts are right, but their type is not a signed integer type.",
     "A counter has no fractions, so convert the result: .astype(np.int64).",
     kind="fact",
-).edit(
-    "encoder",
-    {
-        "np.asarray(theta) * counts_per_rev / (2 * math.pi)).astype(np.int64": "theta * counts_per_rev / (2 * math.pi)"
-    },
-)
+).edit("encoder", {".astype(np.int64)": ""})
 mistakes(
     "NEGATIVE_TURNS_CUT",
     "Whole turns are rounded towards zero and the rest downwards, so each negative angle counts one turn too high.",
@@ -43,12 +67,7 @@ mistakes(
     "TURNS_FORGOTTEN",
     "The count starts over after each turn.",
     "An incremental encoder keeps counting, up and down: wrap neither the angle nor the count.",
-).edit(
-    "encoder",
-    {
-        "np.asarray(theta) * counts_per_rev / (2 * math.pi)).astype(np.int64)": "theta * counts_per_rev / (2 * math.pi)).astype(np.int64) % counts_per_rev"
-    },
-)
+).edit("encoder", {".astype(np.int64)": ".astype(np.int64) % counts_per_rev"})
 mistakes(
     "MUTATES_INPUT",
     "An argument was changed that the caller still needs as it was.",
@@ -129,40 +148,24 @@ mistakes(
     "BIAS_NOT_RANDOM_WALK",
     "The bias scatters and hardly wanders: it varies about as much over one sample as over ten.",
     "Each bias is the previous bias plus a step: bias0 + np.cumsum(steps), with a 0 in front.",
-).body(
+).edit(
     "imu",
-    """
-        n = len(true)
+    {
         # The root of two makes single steps as large as they should be.
-        bias = bias0 + bias_random_walk * math.sqrt(dt / 2) * rng.standard_normal(n)
-        bias[0] = bias0
-        return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
-    """,
+        "math.sqrt(dt) * rng.standard_normal(n - 1)": "math.sqrt(dt / 2) * rng.standard_normal(n)",
+        "np.concatenate(([0.0], np.cumsum(steps)))": "np.append(0.0, steps[1:])",
+    },
 )
 mistakes(
     "BIAS_TIMES_DT",
     "The steps of the bias grow about as dt, without the square root.",
     "The variances of independent steps add up, so the std of one step is bias_random_walk * sqrt(dt).",
-).body(
-    "imu",
-    """
-        n = len(true)
-        bias = bias0 + np.concatenate(([0.0], np.cumsum(bias_random_walk * dt * rng.standard_normal(n - 1))))
-        return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
-    """,
-)
+).edit("imu", {"bias_random_walk * math.sqrt(dt)": "bias_random_walk * dt"})
 mistakes(
     "BIAS_STARTS_LATE",
     "The first bias is not bias0 but about a step away from it, as if it already contained one.",
     "bias[0] is bias0 itself: between N samples there are N - 1 steps.",
-).body(
-    "imu",
-    """
-        n = len(true)
-        bias = bias0 + np.cumsum(bias_random_walk * math.sqrt(dt) * rng.standard_normal(n))
-        return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
-    """,
-)
+).edit("imu", {"n - 1": "n", "np.concatenate(([0.0], np.cumsum(steps)))": "np.cumsum(steps)"})
 mistakes(
     "SAME_DRAW_TWICE",
     "The white noise and the steps of the bias go together, as they do where the same random numbers are used for both.",
@@ -244,21 +247,13 @@ mistakes(
     "HEADING_SUBTRACTED",
     "The beams point where they would if the heading and the angles were subtracted from each other.",
     "Add the angles to the heading: a beam points along heading + angle.",
-).edit(
-    "lidar",
-    {
-        "heading + np.asarray(angles, dtype=float)[:, None]": "np.asarray(angles, dtype=float)[:, None] - heading"
-    },
-)
+).edit("lidar", {"heading + np": "-heading + np"})
 mistakes(
     "BEAM_IN_DEGREES",
     "The direction of a beam, or part of it, is converted between degrees and radians.",
     "heading and angles are both in radians, and np.cos and np.sin take radians: convert nothing.",
 ).edit("lidar", {"= heading +": "= np.degrees(heading) +"}).edit(
-    "lidar",
-    {
-        "heading + np.asarray(angles, dtype=float)[:, None]": "np.radians(heading + np.asarray(angles, dtype=float)[:, None])"
-    },
+    "lidar", {"(beam), np.sin(beam)": "(np.radians(beam)), np.sin(np.radians(beam))"}
 )
 mistakes(
     "BEAM_SIN_COS_SWAPPED",
@@ -274,27 +269,7 @@ mistakes(
     "WALLS_BEHIND_SEEN",
     "With one wall alone, a beam that points away from it does not read r_max.",
     "A beam goes in one direction only: a hit counts only at a distance of zero or more.",
-).program(
-    "lidar",
-    """
-        def lidar(pose, segments, angles, r_max, sigma, rng):
-            \"\"\"Distance along each beam to the nearest of some walls; r_max where there is none.\"\"\"
-            x, y, heading = pose
-            segments = np.asarray(segments, dtype=float).reshape(-1, 2, 2)
-            beam = heading + np.asarray(angles, dtype=float)[:, None]
-            dx, dy = np.cos(beam), np.sin(beam)
-            ax, ay = (segments[:, 0] - (x, y)).T
-            wx, wy = (segments[:, 1] - segments[:, 0]).T
-            cross = dx * wy - dy * wx  # zero where beam and wall are parallel
-            with np.errstate(divide="ignore", invalid="ignore"):
-                along = (ax * wy - ay * wx) / cross
-                share = (ax * dy - ay * dx) / cross
-            hit = (cross != 0) & (share >= 0) & (share <= 1) & (np.abs(along) <= r_max)
-            nearest = np.min(np.where(hit, np.abs(along), np.inf), axis=1, initial=np.inf)
-            noisy = np.maximum(nearest + sigma * rng.standard_normal(len(beam)), 0.0)
-            return np.where(np.isfinite(nearest), noisy, r_max)
-    """,
-)
+).edit("lidar", {"along = (ax * wy - ay * wx) / cross": "along = np.abs((ax * wy - ay * wx) / cross)"})
 mistakes(
     "WALLS_ENDLESS",
     "A wall stops a beam that passes beside it, as if the wall went on beyond its ends.",
@@ -309,12 +284,7 @@ mistakes(
     "NEGATIVE_RANGE",
     "Close to a wall, the noise makes some distances negative.",
     "A distance cannot be negative: apply np.maximum(..., 0.0) after the noise.",
-).edit(
-    "lidar",
-    {
-        "np.maximum(nearest + sigma * rng.standard_normal(len(beam)), 0.0": "nearest + sigma * rng.standard_normal(len(beam)"
-    },
-)
+).edit("lidar", {"len(beam)), 0.0)": "len(beam)), -np.inf)"})
 mistakes(
     "LIDAR_NOISE_SHARED",
     "All beams of a scan have the same error.",
@@ -324,27 +294,14 @@ mistakes(
     "NOT_THE_NEAREST",
     "Where a beam meets two walls, it does not always report the nearest one.",
     "Take the smallest distance of all the hits of each beam.",
-).program(
+).edit(
     "lidar",
-    """
-        def lidar(pose, segments, angles, r_max, sigma, rng):
-            \"\"\"Distance along each beam to the nearest of some walls; r_max where there is none.\"\"\"
-            x, y, heading = pose
-            segments = np.asarray(segments, dtype=float).reshape(-1, 2, 2)
-            beam = heading + np.asarray(angles, dtype=float)[:, None]
-            dx, dy = np.cos(beam), np.sin(beam)
-            ax, ay = (segments[:, 0] - (x, y)).T
-            wx, wy = (segments[:, 1] - segments[:, 0]).T
-            cross = dx * wy - dy * wx  # zero where beam and wall are parallel
-            with np.errstate(divide="ignore", invalid="ignore"):
-                along = (ax * wy - ay * wx) / cross
-                share = (ax * dy - ay * dx) / cross
-            hit = (cross != 0) & (along >= 0) & (share >= 0) & (share <= 1) & (along <= r_max)
-            last = hit.shape[1] - 1 - np.argmax(hit[:, ::-1], axis=1)
-            nearest = np.where(hit.any(axis=1), along[np.arange(len(hit)), last], np.inf)
-            noisy = np.maximum(nearest + sigma * rng.standard_normal(len(beam)), 0.0)
-            return np.where(np.isfinite(nearest), noisy, r_max)
-    """,
+    {
+        "nearest = np.min(np.where(hit, along, np.inf), axis=1, initial=np.inf)": (
+            "last = hit.shape[1] - 1 - np.argmax(hit[:, ::-1], axis=1)\n"
+            "    nearest = np.where(hit.any(axis=1), along[np.arange(len(hit)), last], np.inf)"
+        )
+    },
 )
 mistakes(
     "LAG_EULER_UNSTABLE",
@@ -376,14 +333,7 @@ mistakes(
     "BACKLASH_RATE_DEPENDENT",
     "The same motion in two steps ends elsewhere than in one, so the output depends on how finely it is sampled.",
     "Play does not depend on time: y is the old output, clipped to [x - gap/2, x + gap/2], and nothing else.",
-).body(
-    "backlash",
-    """
-        edge = min(max(state, x - gap / 2), x + gap / 2)
-        y = state + 0.5 * (edge - state)
-        return y, y
-    """,
-)
+).edit("backlash", {"return y, y": "y = state + 0.5 * (y - state)\n    return y, y"})
 mistakes(
     "GAP_DOUBLED",
     "The play is twice as wide as the gap.",
@@ -435,14 +385,7 @@ mistakes(
     "EULER_ODOMETRY",
     "The robot drives straight along the old heading, as if it turned only afterwards.",
     "Move along the arc: its chord points along the heading at the middle of the turn, and its length is that of the arc times sin(turn/2)/(turn/2).",
-).body(
-    "diff_drive_step",
-    """
-        x, y, heading = pose
-        way, turn = (v_left + v_right) / 2 * dt, (v_right - v_left) / track * dt
-        return np.array([x + way * math.cos(heading), y + way * math.sin(heading), heading + turn])
-    """,
-)
+).edit("diff_drive_step", {" * np.sinc(turn / (2 * math.pi))": "", "heading + turn / 2": "heading"})
 mistakes(
     "SPEEDS_WITHOUT_SIGN",
     "A wheel that rolls backwards counts as one that rolls forwards.",
@@ -452,15 +395,7 @@ mistakes(
     "MIDPOINT_ODOMETRY",
     "The robot moves the whole length of the arc in a straight line, but the chord is shorter than its arc.",
     "Multiply by sin(turn/2)/(turn/2), which is 1 when there is no turn.",
-).body(
-    "diff_drive_step",
-    """
-        x, y, heading = pose
-        way, turn = (v_left + v_right) / 2 * dt, (v_right - v_left) / track * dt
-        middle = heading + turn / 2
-        return np.array([x + way * math.cos(middle), y + way * math.sin(middle), heading + turn])
-    """,
-)
+).edit("diff_drive_step", {" * np.sinc(turn / (2 * math.pi))": ""})
 mistakes(
     "LEFT_RIGHT_SWAPPED",
     "A faster right wheel turns the robot to the right.",
@@ -470,34 +405,22 @@ mistakes(
     "SPEED_SUM_TURNS",
     "The robot turns by the sum of the two wheel speeds, so it turns even where both are equal.",
     "Use the difference: turn rate = (v_right - v_left) / track.",
-).edit("diff_drive_step", {"v_right - ": "v_right + ", "  # sin(turn/2)/(turn/2), 1 at 0": ""})
+).edit("diff_drive_step", {"v_right - ": "v_right + "})
 mistakes(
     "TURN_IN_DEGREES",
     "The turn, or the angle of the cosine and the sine, is converted between degrees and radians.",
     "(v_right - v_left) / track * dt is already in radians, and so is the heading: convert nothing.",
-).edit(
-    "diff_drive_step",
-    {
-        "(v_right - v_left) / track": "math.degrees((v_right - v_left) / track)",
-        "  # sin(turn/2)/(turn/2), 1 at 0": "",
-    },
-)
+).edit("diff_drive_step", {"(v_right - v_left) / track": "math.degrees((v_right - v_left) / track)"})
 mistakes(
     "DRIVE_SIN_COS_SWAPPED",
     "The sine and the cosine of the heading are swapped.",
     "x grows with the cosine of heading + turn/2, and y with its sine.",
-).edit(
-    "diff_drive_step",
-    {
-        ")  # sin(turn/2)/(turn/2), 1 at 0": ")",
-        "cos(middle), y + chord * math.sin": "sin(middle), y + chord * math.cos",
-    },
-)
+).edit("diff_drive_step", {"cos(middle), y + chord * math.sin": "sin(middle), y + chord * math.cos"})
 mistakes(
     "SINC_WITHOUT_PI",
     "np.sinc gets the turn without the division by pi that it expects: np.sinc(s) is sin(pi s)/(pi s).",
     "sin(turn/2)/(turn/2) is np.sinc(turn / (2 * pi)).",
-).edit("diff_drive_step", {"(2 * math.pi))  # sin(turn/2)/(turn/2), 1 at 0": "2)"})
+).edit("diff_drive_step", {"(2 * math.pi)": "2"})
 mistakes(
     "STRAIGHT_WRONG",
     "A turn that was tried is right, but driving straight ahead is wrong.",
@@ -616,44 +539,12 @@ mistakes(
     "SURPRISE_INVERTED",
     "When the cart rolls forwards, a measurement ahead of the twin moves the twin further back.",
     "The surprise is z minus the prediction; add a share of it.",
-).body(
-    "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        n = max(1, math.ceil(dt / 0.01))
-        x, v, b = twin["position"], twin["speed"], twin["friction"]
-        for _ in range(n):
-            a = twin["drive"] - b * v
-            x, v = x + dt / n * v + (dt / n) ** 2 / 2 * a, v + dt / n * a
-        surprise = x - z
-        x, v = x + 0.3 * surprise, v + 0.3 * surprise
-        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
-        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": float(b), "memory": {}}
-    """,
-)
+).body("sync", _observer({**_IN_PARTS, "z - x": "x - z"}))
 mistakes(
     "FRICTION_SPEEDS_UP",
     "In the prediction a cart without a drive gets faster, where friction should slow it down.",
     "Friction acts against the motion: dv/dt = drive - friction * speed.",
-).body(
-    "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        n = max(1, math.ceil(dt / 0.01))
-        x, v, b = twin["position"], twin["speed"], twin["friction"]
-        for _ in range(n):
-            a = twin["drive"] + b * v
-            x, v = x + dt / n * v + (dt / n) ** 2 / 2 * a, v + dt / n * a
-        surprise = z - x
-        x, v = x + 0.3 * surprise, v + 0.3 * surprise
-        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
-        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": float(b), "memory": {}}
-    """,
-)
+).body("sync", _observer({**_IN_PARTS, "- b * v": "+ b * v"}))
 mistakes(
     "BELIEVES_MEASUREMENT",
     "The position is simply the measured one, with all its noise.",
@@ -714,9 +605,7 @@ mistakes(
     "Keep the shares from fading. In a Kalman filter, let the variance of the friction grow a little in every prediction (process noise), and correct the covariance after every measurement.",
 ).program(
     "sync",
-    """
-        _WANDER = np.zeros((3, 3))
-    """,
+    "_WANDER = np.zeros((3, 3))",
 )
 mistakes(
     "FRICTION_IGNORED",
@@ -742,72 +631,29 @@ mistakes(
     "SHARE_TOO_LARGE",
     "The position moves most of the way to the measurement, so it takes on most of its noise.",
     "Move the position only a share of the way to z, a third for example: the prediction contains information too.",
-).body(
-    "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        x, v, b = twin["position"], twin["speed"], twin["friction"]
-        a = twin["drive"] - b * v
-        x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
-        surprise = z - x
-        x, v = x + 0.9 * surprise, v + 0.3 * surprise
-        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
-        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": float(b), "memory": {}}
-    """,
-)
+).body("sync", _observer({"x + 0.3": "x + 0.9"}))
 mistakes(
     "LEARNS_FORWARDS_ONLY",
     "When the cart moves backwards, a surprise changes the friction in the wrong direction.",
     "Friction slows the cart in either direction: reverse the correction when the speed is negative.",
-).body(
-    "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        x, v, b = twin["position"], twin["speed"], twin["friction"]
-        a = twin["drive"] - b * v
-        x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
-        surprise = z - x
-        x, v, b = x + 0.3 * surprise, v + 0.3 * surprise, min(max(b - 0.15 * surprise, 0.05), 5.0)
-        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b, "memory": {}}
-    """,
-)
+).body("sync", _observer({" * np.sign(v)": ""}))
 mistakes(
     "FRICTION_HELD_BACKWARDS",
     "When the cart moves backwards, a surprise leaves the friction as it is.",
     "Correct it in either direction of motion: with a negative speed, by the share with the other sign.",
-).program(
+).around(
     "sync",
     """
-        _both_ways = _correct
-
-
-        def _correct(state, spread, z, sigma):
-            after, spread = _both_ways(state, spread, z, sigma)
-            return after if state[1] > 0 else np.append(after[:2], state[2]), spread
+        after, spread = _right(state, spread, z, sigma)
+        return after if state[1] > 0 else np.append(after[:2], state[2]), spread
     """,
+    of="_correct",
 )
 mistakes(
     "STEP_FIXED",
     "The prediction covers the usual 0.1 s even where twice that time has passed.",
     'The measurements come at uneven times, so predict over t_measured - twin["t"].',
-).body(
-    "sync",
-    """
-        if t_measured < twin["t"]:
-            return dict(twin)
-        x, v, b = twin["position"], twin["speed"], twin["friction"]
-        a = twin["drive"] - b * v
-        x, v = x + 0.1 * v + 0.005 * a, v + 0.1 * a
-        surprise = z - x
-        x, v = x + 0.3 * surprise, v + 0.3 * surprise
-        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
-        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": float(b), "memory": {}}
-    """,
-)
+).body("sync", _observer({"dt * v + dt * dt / 2 * a, v + dt * a": "0.1 * v + 0.005 * a, v + 0.1 * a"}))
 mistakes(
     "DRIVE_CHANGED",
     "Your code returns another drive or another sigma than it was given.",
@@ -835,27 +681,12 @@ mistakes(
     """,
 ).body(
     "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        n = max(1, math.ceil(dt / 0.01))
-        x, v, b = twin["position"], twin["speed"], twin["friction"]
-        for _ in range(n):
-            a = twin["drive"] - b * v
-            x, v = x + dt / n * v + (dt / n) ** 2 / 2 * a, v + dt / n * a
-        surprise = z - x
-        x, v = x + 0.3 * surprise, v + 0.3 * surprise
-        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
-        return {
-            **twin,
-            "t": t_measured,
-            "position": x,
-            "speed": v,
-            "friction": float(b),
-            "memory": {"heard": [*twin["memory"].get("heard", []), z, t_measured]},
+    _observer(
+        {
+            **_IN_PARTS,
+            '"memory": {}': '"memory": {"heard": [*twin["memory"].get("heard", []), z, t_measured]}',
         }
-    """,
+    ),
 )
 mistakes(
     "PUSHES_AWAY",
@@ -887,27 +718,19 @@ mistakes(
     "A copy gives the numbers that rng itself gives next, so the same numbers come again: in this call, or in a later one with the same generator.",
     "Draw from rng itself, which moves on with each number. It is the one argument that a call may change.",
     kind="fact",
-).program(
+).around(
     "imu",
     """
         import copy
 
-        _moving_on = imu
-
-
-        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
-            return _moving_on(true, dt, noise_density, bias_random_walk, bias0, copy.deepcopy(rng))
+        return _right(true, dt, noise_density, bias_random_walk, bias0, copy.deepcopy(rng))
     """,
-).program(
+).around(
     "lidar",
     """
         import copy
 
-        _moving_on = lidar
-
-
-        def lidar(pose, segments, angles, r_max, sigma, rng):
-            return _moving_on(pose, segments, angles, r_max, sigma, copy.deepcopy(rng))
+        return _right(pose, segments, angles, r_max, sigma, copy.deepcopy(rng))
     """,
 )
 mistakes(
@@ -968,29 +791,12 @@ mistakes(
     "BIAS0_WITHOUT_SIGN",
     "bias0 has about the right size, but it is not negative even in recordings with a negative bias.",
     "A bias has a sign: return the mean itself, neither its absolute value nor the root of a mean square.",
-).around(
-    "fit_noise",
-    """
-        found = _right(still, dt)
-        return {**found, "bias0": abs(found["bias0"])}
-    """,
-)
+).edit("fit_noise", {"np.mean(still[:window])": "abs(np.mean(still[:window]))"})
 mistakes(
     "DENSITY_FROM_DIFFERENCES",
     "The noise density is too large by about the square root of two.",
     "With white noise, a difference of two samples, or of two means, has twice the variance of one: divide the mean square by two before you take the root. If you do, look at the factor of N**2: it is 1/T.",
-).around(
-    "fit_noise",
-    """
-        found = _right(still, dt)
-        root = math.sqrt(2)
-        return {
-            **found,
-            "noise_density": root * found["noise_density"],
-            "bias_random_walk": root * found["bias_random_walk"],
-        }
-    """,
-)
+).edit("fit_noise", {"np.sqrt(squares)": "np.sqrt(2 * squares)"})
 mistakes(
     "STATE_IN_MODULE",
     "The same call gives a different output after another call, so something is remembered in between, or random.",
@@ -1043,31 +849,19 @@ mistakes(
     "SPEED_DIFFERENTIATED",
     "The speed takes on all of a surprise, divided by the time since the last measurement, as the difference of two positions does; with it comes all of their noise.",
     "Predict the speed from the drive and the friction, and correct it by a share of the surprise, as you do with the position.",
-).program(
+).around(
     "sync",
     """
-        # The speed is the difference of the last two positions over the time between them.
-
-
-        _right_sync = sync
-
-
-        def sync(twin, z, t_measured):
-            out = _right_sync(twin, z, t_measured)
-            dt = out["t"] - twin["t"]
-            return {**out, "speed": (z - twin["position"]) / dt} if dt > 0 else out
+        out = _right(twin, z, t_measured)
+        dt = out["t"] - twin["t"]
+        return {**out, "speed": (z - twin["position"]) / dt} if dt > 0 else out
     """,
 )
 mistakes(
     "COUNTS_OVERFLOW",
     "Some counts are off by 65,536 or a multiple of it, as in an integer type of 16 bits.",
     "Convert with .astype(np.int64), and with no smaller type before it.",
-).edit(
-    "encoder",
-    {
-        "np.asarray(theta) * counts_per_rev / (2 * math.pi)).astype(np.int64": "theta * counts_per_rev / (2 * np.pi)).astype(np.int16"
-    },
-)
+).edit("encoder", {"np.int64": "np.int16"})
 mistakes(
     "GAIN_TOO_LARGE",
     "The correction is stronger than the README's 0.2 to 3 per second.",
@@ -1127,15 +921,14 @@ mistakes(
     "WHITE_NOISE_RELATED",
     "The white noise of one sample is related to that of the next, although it does not wander off as a running sum does.",
     "Draw a standard normal number of its own for each sample: use none of them twice, and do not average or filter them.",
-).body(
+).edit(
     "imu",
-    """
-        n = len(true)
-        steps = bias_random_walk * math.sqrt(dt) * rng.standard_normal(n - 1)
-        bias = bias0 + np.concatenate(([0.0], np.cumsum(steps)))
-        white = np.convolve(rng.standard_normal(n + 1), [math.sqrt(0.5)] * 2, "valid")
-        return true + bias + noise_density / math.sqrt(dt) * white, bias
-    """,
+    {
+        "return true": (
+            'white = np.convolve(rng.standard_normal(n + 1), [math.sqrt(0.5)] * 2, "valid")\n    return true'
+        ),
+        "rng.standard_normal(n), bias": "white, bias",
+    },
 )
 mistakes(
     "FRICTION_LIMITED",
@@ -1208,18 +1001,14 @@ mistakes(
     "PARALLEL_TEST_WRONG",
     "A wall square to the beam, of one metre or shorter, is not seen.",
     "If your code asks whether beam and wall are parallel: the cross product of their directions is zero there, and has the wall's length as a factor.",
-).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) != 1"}).edit(
-    "lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) > 0.3"}
-)
+).edit("lidar", {"cross != 0": "abs(cross) != 1"}).edit("lidar", {"cross != 0": "abs(cross) > 0.3"})
 mistakes(
     "WALL_ENDS_SORTED",
     "A wall that falls towards larger x is seen as one that rises.",
     "An end is a pair of x and y: if you sort the ends, keep x and y of each together.",
-).edit(
+).around(
     "lidar",
-    {
-        "np.asarray(segments, dtype=float).reshape(-1, 2, 2)": "np.sort(np.reshape(segments, (-1, 2, 2)), axis=1)"
-    },
+    "return _right(pose, np.sort(np.reshape(segments, (-1, 2, 2)), axis=1), angles, r_max, sigma, rng)",
 )
 mistakes(
     "WALL_AT_PI_MISSED",
@@ -1235,7 +1024,7 @@ mistakes(
     "WALLS_ONE_SIDED",
     "Of some walls it matters which end is given first: a wall in a beam's way is not seen.",
     "The order of the ends means nothing. The cross product of beam and wall may have either sign, and neither end need have the smaller x or y.",
-).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "(cross != 0) &": "(cross > 1e-12) &"})
+).edit("lidar", {"cross != 0": "cross > 1e-12"})
 mistakes(
     "NOT_QUANTISED",
     "Some of the results are not whole numbers.",
@@ -1936,12 +1725,7 @@ mistakes(
     "DELAY_OF_WHOLE_NUMBERS",
     "From whole numbers come whole numbers: what lies between two samples loses its decimals.",
     "Make the result an array of floats: np.zeros(len(x)). np.zeros_like(x) takes the type of x.",
-).edit(
-    "delay_line",
-    {
-        "return np.interp(t - latency, t, x, left=0.0)": "return np.interp(t - latency, t, x, left=0.0).astype(np.asarray(x).dtype)"
-    },
-)
+).around("delay_line", "return _right(x, dt, latency).astype(np.asarray(x).dtype)")
 mistakes(
     "DELAY_GOES_ON_BACKWARDS",
     "Less than a sample before the first one the output is not 0: it lies on the line through the first two samples, drawn on backwards.",
@@ -2235,21 +2019,7 @@ mistakes(
     "FRICTION_ONE_WAY",
     "The friction moves in one direction only, whichever sign the surprise has.",
     "Take the surprise with its sign: a cart that falls behind has more friction, and one that gets ahead has less.",
-).body(
-    "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        x, v, b = twin["position"], twin["speed"], twin["friction"]
-        a = twin["drive"] - b * v
-        x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
-        surprise = z - x
-        x, v = x + 0.3 * surprise, v + 0.3 * surprise
-        b = min(max(b - 0.15 * abs(surprise), 0.05), 5.0)
-        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b, "memory": {}}
-    """,
-)
+).body("sync", _observer({"surprise * np.sign(v)": "abs(surprise)"}))
 mistakes(
     "LAST_BIAS_LEFT_OUT",
     "The last step of the bias is far larger than the others.",
@@ -2270,18 +2040,13 @@ mistakes(
     "The sign of the correction is that of the speed, whichever way the drive pushes: a cart that rolls forwards and falls behind has more friction.",
 ).body(
     "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        x, v, b = twin["position"], twin["speed"], twin["friction"]
-        a = twin["drive"] - b * v
-        x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
-        surprise = z - x
-        x, v = x + 0.3 * surprise, v + 0.4 * surprise
-        b = max(b - 0.4 * surprise * (1 if twin["drive"] > 0 else -1), 0.01)
-        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b, "memory": {}}
-    """,
+    _observer(
+        {
+            "v + 0.3": "v + 0.4",
+            "min(max(b - 0.15": "max(b - 0.4",
+            "np.sign(v), 0.05), 5.0)": '(1 if twin["drive"] > 0 else -1), 0.01)',
+        }
+    ),
 )
 mistakes(
     "LARGE_SURPRISES_DROPPED",

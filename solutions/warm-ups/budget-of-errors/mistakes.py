@@ -23,10 +23,7 @@ mistakes(
     "ROOT_MISSING",
     "Your result is the square of the total.",
     "Take the root at the end.",
-).edit(
-    "total_error",
-    {"math.sqrt(sum(error * error for error in errors)": "sum(error * error for error in errors"},
-)
+).edit("total_error", {"math.sqrt(": "("})
 mistakes(
     "MEAN_OF_THE_ERRORS",
     "Your result is the mean of the errors.",
@@ -41,18 +38,12 @@ mistakes(
     "SUM_OVER_ROOT_OF_NUMBER",
     "You divided the sum by the root of the number of errors.",
     "Add the squares of the errors, and take the root of this sum.",
-).edit(
-    "total_error",
-    {"math.sqrt(sum(error * error for error in errors))": "sum(errors) / math.sqrt(len(errors))"},
-)
+).body("total_error", "return sum(errors) / math.sqrt(len(errors))")
 mistakes(
     "HALF_NOT_ROOT",
     "You halved the sum of the squares instead of taking its root.",
     "Write **0.5, or math.sqrt. Python reads x**1/2 as half of x.",
-).edit(
-    "total_error",
-    {"math.sqrt(sum(error * error for error in errors))": "sum(error * error for error in errors) / 2"},
-)
+).body("total_error", "return sum(error * error for error in errors) / 2")
 mistakes(
     "FIRST_TWO_ONLY",
     "Only the first two errors count.",

@@ -20,10 +20,7 @@ mistakes(
     "LIMIT_FORGOTTEN",
     "The limit is not used.",
     "Never return more than the limit.",
-).edit(
-    "reading",
-    {"min(round(distance / resolution) * resolution, limit)": "round(distance / resolution) * resolution"},
-)
+).body("reading", "return round(distance / resolution) * resolution")
 mistakes(
     "COUNTS_FORGOTTEN",
     "The distance is not rounded to whole counts.",

@@ -8,20 +8,12 @@ mistakes(
     "MEAN_OF_QUOTIENTS",
     "Your result is the mean of force over speed. There a point near zero counts as much as a fast one, and its noise counts more.",
     "Weight the points: the sum of v f over the sum of v v.",
-).edit(
-    "damping",
-    {
-        "(v * f for v, f in zip(speeds, forces)) / sum(v * v for v in speeds": "(f / v for v, f in zip(speeds, forces)) / len(speeds"
-    },
-)
+).body("damping", "return sum(f / v for v, f in zip(speeds, forces)) / len(speeds)")
 mistakes(
     "QUOTIENT_OF_SUMS",
     "The sums are divided. Speeds of opposite sign would cancel.",
     "Multiply each force by its speed before adding.",
-).edit(
-    "damping",
-    {"(v * f for v, f in zip(speeds, forces)) / sum(v * v for v in speeds": "(forces) / sum(speeds"},
-)
+).body("damping", "return sum(forces) / sum(speeds)")
 mistakes(
     "QUOTIENT_OF_SIZES",
     "Your result is the sum of the forces over the sum of the speeds, both without their signs.",

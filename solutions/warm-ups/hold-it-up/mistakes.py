@@ -60,10 +60,7 @@ mistakes(
     "NEVER_NEGATIVE",
     "Your torque is never negative.",
     "Beyond upright the weight is on the other side: there the motor must pull the other way.",
-).edit(
-    "holding_torque",
-    {"return 0.5 * m * g * l * math.cos(angle)": "return max(0.0, 0.5 * m * g * l * math.cos(angle))"},
-)
+).edit("holding_torque", {"return 0.5": "return max(0.0, 0.5", "(angle)": "(angle))"})
 
 mistakes.accept(
     "As a cross product",

@@ -56,10 +56,7 @@ mistakes(
     "OF_THE_VARIANCE",
     "You divided the variance by n, but took no root of it.",
     "Take the root of that.",
-).edit(
-    "standard_error",
-    {"statistics.stdev(values) / math.sqrt(len(values))": "statistics.variance(values) / len(values)"},
-)
+).body("standard_error", "return statistics.variance(values) / len(values)")
 mistakes(
     "TWO_STANDARD_ERRORS",
     "Your result is about two standard errors, as for an interval of 95 %.",

@@ -15,18 +15,12 @@ mistakes(
     "NO_LOGARITHM",
     "The two factors themselves are divided, not their logarithms.",
     "Divide their logarithms.",
-).edit(
-    "observed_order",
-    {"return math.log(error / error_small) / math.log(h": "return (error / error_small) / (h"},
-)
+).body("observed_order", "return (error / error_small) / (h / h_small)")
 mistakes(
     "AXES_SWAPPED",
     "Your result is one over the order: the axes are swapped.",
     "Divide the logarithm of the errors by that of the steps.",
-).edit(
-    "observed_order",
-    {"error / error_small) / math.log(h / h_small": "h / h_small) / math.log(error / error_small"},
-)
+).body("observed_order", "return math.log(h / h_small) / math.log(error / error_small)")
 mistakes(
     "SIGN_TURNED",
     "The order has the wrong sign: one quotient is upside down.",
@@ -51,10 +45,7 @@ mistakes(
     "SLOPE_WITHOUT_LOGARITHM",
     "You divided the change of the error by the change of the step, without logarithms.",
     "A power is a slope only between logarithms.",
-).edit(
-    "observed_order",
-    {"math.log(error / error_small) / math.log(h / h_small)": "(error - error_small) / (h - h_small)"},
-)
+).body("observed_order", "return (error - error_small) / (h - h_small)")
 mistakes(
     "LOGARITHM_OF_DIFFERENCES",
     "You took the logarithm of a difference.",
@@ -71,12 +62,7 @@ mistakes(
     "ROUNDED",
     "You rounded the order to a whole number.",
     "Give it as it comes out: then one sees whether it is one.",
-).edit(
-    "observed_order",
-    {
-        "math.log(error / error_small) / math.log(h / h_small)": "round(math.log(error / error_small) / math.log(h / h_small))"
-    },
-)
+).around("observed_order", "return round(_right(h, error, h_small, error_small))")
 mistakes(
     "LOGARITHMS_SUBTRACTED",
     "You subtracted the logarithm of the steps from that of the errors.",

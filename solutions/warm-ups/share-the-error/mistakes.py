@@ -13,10 +13,7 @@ mistakes(
     "SHARES_SWAPPED",
     "The shares are swapped: with the share 0 it takes the measurement.",
     "The share says how far to go towards the measurement.",
-).edit(
-    "corrected",
-    {"predicted + share * (measured - predicted)": "share * predicted + (1.0 - share) * measured"},
-)
+).body("corrected", "return share * predicted + (1.0 - share) * measured")
 mistakes(
     "MEASUREMENT_ADDED",
     "A share of the measurement is added, not of the difference.",
@@ -66,10 +63,7 @@ mistakes(
     "DIVIDED_BY_THE_WEIGHTS",
     "You give the prediction the weight 1 and the measurement the share, and divide by both.",
     "The weights are 1 - share and share, which are 1 together.",
-).edit(
-    "corrected",
-    {"predicted + share * (measured - predicted)": "(predicted + share * measured) / (1.0 + share)"},
-)
+).body("corrected", "return (predicted + share * measured) / (1.0 + share)")
 
 mistakes.accept(
     "Starts from the other end",

@@ -42,22 +42,12 @@ mistakes(
     "FROM_ONE_TO_THE_NEXT",
     "You compare each value with the one before it.",
     "A slow drift is made of small changes. Compare each value with the first.",
-).edit(
-    "worst_drift",
-    {
-        "abs(energy - energies[0]) for energy in energies": "abs(b - a) for a, b in zip(energies, energies[1:])"
-    },
-)
+).body("worst_drift", "return max(abs(b - a) for a, b in zip(energies, energies[1:])) / abs(energies[0])")
 mistakes(
     "SHARE_OF_ITSELF",
     "You divide each distance by the value of that moment.",
     "The drift is a share of the first value: divide by that.",
-).edit(
-    "worst_drift",
-    {
-        "max(abs(energy - energies[0]) for energy in energies) / abs(energies[0])": "max(abs(energy - energies[0]) / abs(energy) for energy in energies)"
-    },
-)
+).body("worst_drift", "return max(abs(energy - energies[0]) / abs(energy) for energy in energies)")
 mistakes(
     "PER_CENT",
     "Your result is in per cent.",

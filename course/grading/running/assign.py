@@ -189,13 +189,10 @@ def assign(
     timeout = float(options.get("timeout", 10.0))
     done: list[Assigned] = []
     with frozen(snapshot) as graders:
-        asked = {(one.student, one.exercise): one for one in assignments}
-        exercises = {one.exercise: graders.catalog.exercise(one.exercise) for one in assignments}
-        entries = [
-            Entry(one.student, exercise, submission_from(exercise, one.path, one.member))
-            for one in asked.values()
-            for exercise in [exercises[one.exercise]]
-        ]
+        asked, entries = {(one.student, one.exercise): one for one in assignments}, []
+        for one in asked.values():
+            exercise = graders.catalog.exercise(one.exercise)
+            entries.append(Entry(one.student, exercise, submission_from(exercise, one.path, one.member)))
         terms = Terms(level, at_least, timeout, results.seed, snapshot.sha256)
         for graded in list(grade(entries, terms)):
             if not done:

@@ -247,15 +247,13 @@ class CollectedChecks:
         try:
             with np.errstate(all="ignore"):  # a check may compute with whatever a submission returned
                 if check.id in self._plain:
-                    fixtures = self._plugin.fixtures(item.name, self._plain[check.id])
-                    if item.obj(**fixtures) is None:
-                        return None
-        except (KeyboardInterrupt, pytest.exit.Exception):  # ends pytest's own protocol, too
-            raise
-        except BaseException as error:  # noqa: BLE001 - whatever a check raises is how it ends
-            return error
-        else:
-            with np.errstate(all="ignore"):
+                    try:
+                        if item.obj(**self._plugin.fixtures(item.name, self._plain[check.id])) is None:
+                            return None
+                    except (KeyboardInterrupt, pytest.exit.Exception):  # ends pytest's own protocol, too
+                        raise
+                    except BaseException as error:  # noqa: BLE001 - whatever a check raises is how it ends
+                        return error
                 # What returns something may be no test at all: pytest knows.
                 return self._through_pytest(item)
         finally:

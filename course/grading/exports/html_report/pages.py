@@ -334,7 +334,7 @@ def _facts(tally: Tally) -> list[tuple[int, str, str]]:
         (tally.overrides.count, "scores set by hand", "overrides"),
         (tally.late.count, "handed in late", "late"),
     ]
-    return [fact for at, fact in enumerate(facts) if at < 4 or fact[0]]
+    return [*facts[:4], *(fact for fact in facts[4:] if fact[0])]  # the others only where there are any
 
 
 def _middle(scores: Sequence[float]) -> tuple[str, str]:

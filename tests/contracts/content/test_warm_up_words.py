@@ -40,7 +40,6 @@ def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog, warm
     checks = CollectedChecks(check_files(exercise, catalog, "public"), draws=False)
     model = (solutions_folder(catalog, exercise) / exercise.module).read_text(encoding="utf-8")
     table, questions = read_table(Path(exercise.folder)), questions_of(warm_up)
-    assert table is not None
     assert questions is not None
     for task, codes, function in hypotheses_of(catalog, exercise):
         submission = LocalSubmission(model, replaced={task: function})

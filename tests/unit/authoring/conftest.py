@@ -88,11 +88,9 @@ class Oracle:
 
 
 def _checks(exercise: Exercise, catalog: Catalog) -> tuple[CheckSource, ...]:
-    graders = catalog.content.graders
-    assert graders is not None
     return (
         *checks_in(exercise.checks_path, parse(exercise.checks_path), hidden=False),
-        *checks_in(path := graders / exercise.id / "checks.py", parse(path), hidden=True),
+        *checks_in(path := catalog.content.graders / exercise.id / "checks.py", parse(path), hidden=True),
     )
 
 

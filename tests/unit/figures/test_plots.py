@@ -75,7 +75,6 @@ def test_curves_that_are_one_on_paper_are_not_drawn():
 def test_whatever_a_curve_holds_it_can_be_drawn_and_said(wrong):
     for yours in (np.full(41, wrong), np.where(T > 1, wrong, RIGHT)):
         curve = compared(T, yours, RIGHT, "x", "m")
-        assert curve is not None
         plot = plot_of(curve)
         assert render(plot).startswith(b"\x89PNG")
         assert f"yours is at {wrong:.3g} m" in plot.description
@@ -97,7 +96,6 @@ def test_of_a_long_swing_the_beginning_is_drawn_with_the_place_where_the_curves_
     right = np.cos(2 * t)  # turns every pi / 2
     for parts, end in ((0.3, 10 * np.pi / 2), (50.0, 33 * np.pi / 2)):
         curve = compared(t, np.where(t > parts, 1.5 * right, right), right, "x", "m")
-        assert curve is not None
         drawn = plot_of(curve)
         assert np.asarray(drawn.panels[0].series[0].x)[-1] == pytest.approx(end, abs=0.1)
         assert "until" in drawn.title
@@ -107,7 +105,6 @@ def test_of_a_long_swing_the_beginning_is_drawn_with_the_place_where_the_curves_
 def test_a_curve_is_handed_on_in_few_points_with_both_ends():
     t = np.linspace(0.0, 9.0, 4001)
     long = compared(t, np.where(t > 5.0, np.nan, t), 2 * t, "x", "m")
-    assert long is not None
     few = thinned(long)
     assert len(few.t) == 200
     assert (few.t[0], few.t[-1]) == (0.0, 9.0)

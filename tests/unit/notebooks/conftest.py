@@ -21,7 +21,6 @@ def integrators(catalog: Catalog) -> Exercise:
 @pytest.fixture(scope="session")
 def solution(catalog: Catalog) -> str:
     """The model solution's text."""
-    assert catalog.content.solutions is not None
     return (catalog.content.solutions / "integrators" / "integrators.py").read_text(encoding="utf-8")
 
 

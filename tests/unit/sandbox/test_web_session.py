@@ -34,7 +34,6 @@ def make(name="restitution-row", clock=None, **more):
     desk = more.pop("desk", None)
     made = Session(Stage(chosen, clock=clock, **more), desk, clock=clock)
     page = made.join()
-    assert page is not None
     return made, page
 
 
@@ -84,7 +83,6 @@ def test_a_body_that_is_dragged_follows_the_hand_and_flies_on():
 def test_only_the_page_that_holds_a_body_moves_it_and_leaving_lets_go():
     made, page = make("head-on")
     other = made.join()
-    assert other is not None
     send(made, page, "grab", x=-1, y=0)
     send(made, other, "drag", x=5, y=5)
     send(made, other, "release")
@@ -307,7 +305,6 @@ def test_a_reset_ends_the_story_of_the_run_before():
     made.tick(0)
     assert [message for message in of(told(page), "events") if message.get("anew")]
     late = made.join()
-    assert late is not None
     assert told(late)[0]["events"] == []
 
 

@@ -34,7 +34,6 @@ NUMBER = re.compile(r"\d+(?:\.\d+)?")
 def texts(name, settings=None):
     """Question and explanation of a scene."""
     chosen = choose(name, settings)
-    assert chosen.scene.prediction is not None
     said = compare(chosen.scene.prediction, 0.0, values_of(chosen), None)
     return f"{said.question} {said.why}"
 
@@ -48,7 +47,6 @@ def test_numbers_that_are_written_out_are_those_that_nothing_changes(name):
 
 def test_a_setting_that_changes_the_answer_and_no_word_is_found():
     scene = choose("head-on").scene
-    assert scene.prediction is not None
     plain = msgspec.structs.replace(scene.prediction, question="How fast?", why="It follows.")
     assert "restitution" in list(unsaid(msgspec.structs.replace(scene, prediction=plain)))
 

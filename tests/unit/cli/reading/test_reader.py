@@ -544,8 +544,7 @@ async def test_what_stands_for_a_closed_answer_is_on_no_screen_of_its_own(app, p
 
 @reads(size=(40, 20), section="worked-example-one-step-by-hand")
 async def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(app, pilot):
-    page, book = app.page, app.page.book
-    assert book is not None
+    page = app.page
     cut = page.end()
     assert cut < page.top + page.room
     app.page.rebuild(figures_of(app)[-1])

@@ -65,7 +65,6 @@ class FakeWorkers:
 
     def send(self, payload, done):
         batch = decode(payload, Batch)
-        assert batch is not None
         with self._lock:
             self._sent.append((batch, done))
             if self._timer is None:

@@ -294,6 +294,19 @@ def _show(console: Console, comparison: Comparison, findings: Sequence[str]) -> 
             console.item("-", sentence) if console.fancy else console.line(f"- {sentence}", indent=2)
 
 
+def _origins(console: Console, comparison: Comparison) -> None:
+    cached = sorted({row.measured for row in comparison.rows if row.origin == "cached"})
+    console.note(("This machine: ", "bold"), str(comparison.machine))
+    if cached:
+        when = cached[0] if cached[0] == cached[-1] else f"{cached[0]} to {cached[-1]}"
+        console.note(f"Remembered from {when}; --fresh measures again.")
+    if comparison.reference is not None:
+        where = f" were not measured here: {comparison.reference.label}."
+        console.note(("Rows marked reference", "bold"), where)
+    if comparison.quick:
+        console.note("Quick: fewer starts, steps and repetitions; leave --quick out for the whole.")
+
+
 def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: frozenset[int]) -> None:
     if not console.quiet:
         console.heading(scenario.title, scenario.id)
@@ -400,16 +413,3 @@ def _short(value: float) -> str:
 
 def _unit(text: str, scenario: Scenario) -> str:
     return text if scenario.unit == "1" else f"{text}{'' if scenario.unit == 'x' else ' '}{scenario.unit}"
-
-
-def _origins(console: Console, comparison: Comparison) -> None:
-    cached = sorted({row.measured for row in comparison.rows if row.origin == "cached"})
-    console.note(("This machine: ", "bold"), str(comparison.machine))
-    if cached:
-        when = cached[0] if cached[0] == cached[-1] else f"{cached[0]} to {cached[-1]}"
-        console.note(f"Remembered from {when}; --fresh measures again.")
-    if comparison.reference is not None:
-        where = f" were not measured here: {comparison.reference.label}."
-        console.note(("Rows marked reference", "bold"), where)
-    if comparison.quick:
-        console.note("Quick: fewer starts, steps and repetitions; leave --quick out for the whole.")

@@ -196,7 +196,16 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
     csv = here.target(csv, "--csv", ("csv",)) if csv else None
     with console.working(f"Running {simulation.id}"):
         result = run_simulation(simulation, pairs)
-    _show(console, simulation, result)
+    if not console.quiet:
+        console.heading(simulation.title)
+        changed = [p.name for p in simulation.parameters if result.settings[p.name] != p.default]
+        console.line((_settings(simulation, result), "dim"))
+        if changed:
+            console.line(f"Changed: {', '.join(changed)}.")
+        console.figure(lambda: _drawn(result))
+        heads = ("Measured", "Simulated", "Theory", "Error")
+        console.table_or_facts(heads, [_cells(row) for row in result.rows])
+    console.line((result.finding, "bold"))
     plotted = written = None
     if plot:
         from course.figures.experiments import render
@@ -215,19 +224,6 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
 
 
 # -- on the screen ---------------------------------------------------------------------------------------
-
-
-def _show(console: Console, simulation: Simulation, result: Result) -> None:
-    if not console.quiet:
-        console.heading(simulation.title)
-        changed = [p.name for p in simulation.parameters if result.settings[p.name] != p.default]
-        console.line((_settings(simulation, result), "dim"))
-        if changed:
-            console.line(f"Changed: {', '.join(changed)}.")
-        console.figure(lambda: _drawn(result))
-        heads = ("Measured", "Simulated", "Theory", "Error")
-        console.table_or_facts(heads, [_cells(row) for row in result.rows])
-    console.line((result.finding, "bold"))
 
 
 def _drawn(result: Result) -> Any:

@@ -160,7 +160,7 @@ class PlainPrinter(_Printer):
                 self._verbatim("Text", text)
             case b.MathBlock(spoken=spoken):
                 for row in spoken.splitlines():
-                    self._prose(f"Formula: {row}", whole=True)
+                    self._say(f"Formula: {row}")
             case b.Diagram(description=description):
                 self._say(f"Diagram: {description}")
             case b.Figure():
@@ -185,8 +185,8 @@ class PlainPrinter(_Printer):
             case _:
                 assert_never(block)
 
-    def _prose(self, text: str, *, whole: bool = False) -> None:
-        for line in [text] if whole else sentences(text):
+    def _prose(self, text: str) -> None:
+        for line in sentences(text):
             self._say(line)
 
     def _labelled(self, label: str, inner: tuple[b.Block, ...]) -> None:
@@ -485,22 +485,16 @@ class _Prefixed:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Segment]:
         room = options.update_width(options.max_width - len(self.mark))
         for line in console.render_lines(self.inner, room, pad=False):
-            kept = _stripped(line)
+            kept = list(line)  # without the blanks at its end; control codes stay
+            while kept and not kept[-1].control and not kept[-1].text.strip():
+                kept.pop()
+            if kept and not kept[-1].control:
+                kept[-1] = Segment(kept[-1].text.rstrip(), kept[-1].style)
             if kept or self.style:
                 yield Segment(self.mark, self.style)
             for text, style, control in kept:
                 yield Segment(text.replace(KEEP, " "), style, control)
             yield Segment.line()
-
-
-def _stripped(line: list[Segment]) -> list[Segment]:
-    """A line without the blanks at its end; control codes stay."""
-    kept = list(line)
-    while kept and not kept[-1].control and not kept[-1].text.strip():
-        kept.pop()
-    if kept and not kept[-1].control:
-        kept[-1] = Segment(kept[-1].text.rstrip(), kept[-1].style)
-    return kept
 
 
 def _commands(commands: tuple[b.Command, ...]) -> RenderableType:

@@ -261,15 +261,6 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     columns, rows = console.width, _PANEL_ROWS * (1 if wide else 2)
     if console.interactive:  # otherwise the output is a file, or the picture of a page
         rows = max(_PANEL_ROWS // 2, min(rows, console.height - _WORDS))
-    with console.working("Drawing"):
-        drawn = in_cells(lambda: draw(_plot(before, after, wide=wide)), columns, rows)
-    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
-    for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
-        console.rich().print(line)
-    console.line(("Grey: the motion of the other panel.", "dim"))
-
-
-def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
     # Each with the other in grey: then both have the same axes, and the growth shows.
     panels = tuple(
         Panel(
@@ -280,4 +271,10 @@ def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
         )
         for title, motion, other in (("before", before, after), ("after", after, before))
     )
-    return Plot("", panels, columns=2 if wide else 1)
+    plot = Plot("", panels, columns=2 if wide else 1)
+    with console.working("Drawing"):
+        drawn = in_cells(lambda: draw(plot), columns, rows)
+    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
+    for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
+        console.rich().print(line)
+    console.line(("Grey: the motion of the other panel.", "dim"))

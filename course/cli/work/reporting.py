@@ -41,29 +41,21 @@ def report(
     report_source_file(console, here, work)
     with console.working(f"Running {work.name}"):
         made = report_of(chosen, here.catalog, work.submission)
-    folder = _folder(here, chosen.place, out)
+    folder = here.workspace.path(chosen.place, "report") if out is None else named(out)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        problem = f"The folder {folder} cannot be made ({error.strerror or error})."
+        raise UsageError(problem, help="Name another one with --out.", code="not_writable") from error
     console.heading(made.title, chosen.id)
-    files = (folder / f"{n}-{_slug(one.title)}.png" for n, one in enumerate(made.sections, 1))
+    names = (re.sub(r"[^a-z0-9]+", "-", one.title.lower()).strip("-")[:40] for one in made.sections)
+    files = (folder / f"{number}-{name or 'section'}.png" for number, name in enumerate(names, 1))
     sections = tuple(_shown(console, *both) for both in zip(made.sections, files, strict=True))
     written = _write_bag(console, made, bag) if bag is not None else None
     console.next(after_report(here, chosen))
     return here.answer(
         filled(ReportReply, made, course=here.course, exercise=chosen.id, sections=sections, bag=written)
     )
-
-
-def _folder(here: Here, place: str, out: Path | None) -> Path:
-    folder = here.workspace.path(place, "report") if out is None else named(out)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        problem = f"The folder {folder} cannot be made ({error.strerror or error})."
-        raise UsageError(problem, help="Name another one with --out.", code="not_writable") from error
-    return folder
-
-
-def _slug(title: str) -> str:
-    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40] or "section"
 
 
 def _shown(console: Console, section: Section, path: Path) -> SectionReply:

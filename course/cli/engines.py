@@ -119,16 +119,6 @@ _COLUMNS = (
 )
 
 
-def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
-    """Every row with its truth, its error and whether it is the best of its column."""
-    best, made = best_rows(comparison.rows), []
-    for row in comparison.rows:
-        scenario = SCENARIOS[row.scenario]
-        error = None if row.value is None else scenario.error(row.value)
-        made.append(filled(EngineRow, row, scenario, error=error, best=id(row) in best))
-    return tuple(made)
-
-
 app = group(COMMANDS["engines"].summary)
 
 #: The longest and the shortest step that make sense in the scenarios, s.
@@ -192,7 +182,11 @@ def compare(
         comparison = comparing.compare(request, progress)
     said = findings(comparison.rows)
     _show(console, comparison, said)
-    numbers = rows(comparison)
+    best, numbers = best_rows(comparison.rows), []
+    for row in comparison.rows:  # with its truth, its error and whether it is the best of its column
+        scene = SCENARIOS[row.scenario]
+        error = None if row.value is None else scene.error(row.value)
+        numbers.append(filled(EngineRow, row, scene, error=error, best=id(row) in best))
     plots = _plotted(console, comparison, plot) if plot else ()
     table = None
     if csv:
@@ -213,7 +207,7 @@ def compare(
             quick=comparison.quick,
             engines=comparison.engines,
             scenarios=_scenarios(dict.fromkeys(row.scenario for row in comparison.rows)),
-            rows=numbers,
+            rows=tuple(numbers),
             findings=said,
             plots=plots,
             csv=table,

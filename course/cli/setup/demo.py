@@ -112,7 +112,11 @@ def demo() -> int:
             _say_next(console)
             return 0
         after = _motion(console, session, fixed, passes=True)
-    change = _change(mistaken, fixed.source.decode())
+    # The lines that differ, as a diff without its head, indented as little as possible.
+    lines = difflib.ndiff(mistaken.splitlines(), fixed.source.decode().splitlines())
+    changed = [line for line in lines if line[:2] in {"- ", "+ "}]
+    margin = min(len(line) - 2 - len(line[2:].lstrip()) for line in changed)
+    change = tuple(line[:2] + line[2 + margin :] for line in changed)
     _show_fixed(console, example, before, after, change)
     _say_next(console)
     return console.answer(
@@ -239,14 +243,6 @@ def worked_example(catalog: Catalog) -> Exercise:
     return msgspec.structs.replace(
         read_document(folder / "exercise.toml", Exercise).value, folder=str(folder)
     )
-
-
-def _change(before: str, after: str) -> tuple[str, ...]:
-    """The lines that differ, as a diff without its head, indented as little as possible."""
-    lines = difflib.ndiff(before.splitlines(), after.splitlines())
-    changed = [line for line in lines if line[:2] in {"- ", "+ "}]
-    margin = min(len(line) - 2 - len(line[2:].lstrip()) for line in changed)
-    return tuple(line[:2] + line[2 + margin :] for line in changed)
 
 
 def _draw(console: Console, before: _Motion, after: _Motion) -> None:

@@ -114,23 +114,17 @@ def run(
 
     try:
         summary, tried = opt.agreed(console, grading, yes=yes)
-    except KeyboardInterrupt:
-        raise _interrupted(reached, out) from None
+    except KeyboardInterrupt:  # what is there after Ctrl-C, and how it goes on
+        done, total = reached
+        words = f"all of the work of {done} of {total} students is graded" if total else "nothing was graded"
+        kept = f"Interrupted: {words}. What is graded is kept, and the rest is not graded yet."
+        none = "Interrupted before anything was graded; nothing was written."
+        fix = "The same command with --resume goes on." if out.exists() else ""
+        told = CourseError(kept if out.exists() else none, help=fix, code="interrupted")
+        told.exit_code = INTERRUPTED
+        raise told from None
     _show_summary(console, summary, out, options, tried)
     return summary.exit_code
-
-
-def _interrupted(reached: list[int], out: Path) -> CourseError:
-    """What is there after Ctrl-C, and how it goes on."""
-    done, total = reached
-    if not out.exists():
-        told = CourseError("Interrupted before anything was graded; nothing was written.", code="interrupted")
-    else:
-        words = f"all of the work of {done} of {total} students is graded" if total else "nothing was graded"
-        message = f"Interrupted: {words}. What is graded is kept, and the rest is not graded yet."
-        told = CourseError(message, help="The same command with --resume goes on.", code="interrupted")
-    told.exit_code = INTERRUPTED
-    return told
 
 
 def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out: Path) -> None:

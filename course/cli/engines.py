@@ -329,11 +329,9 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
 
 def _tuned(cells: Mapping[Setting, str], rows: Sequence[Row], engine: str, dt: float) -> str:
     """The well-set result of the engine; a word where it has nothing to set."""
-    tuned = next((r for r in rows if (r.engine, r.setting, r.dt) == (engine, TUNED, dt) and r.ok), None)
-    default = next((r for r in rows if (r.engine, r.setting, r.dt) == (engine, DEFAULT, dt) and r.ok), None)
-    same = tuned is not None and default is not None and not tuned.options
+    mine = {row.setting: row for row in reversed(rows) if (row.engine, row.dt) == (engine, dt) and row.ok}
     text = cells.get(TUNED, "")
-    if same and text:
+    if text and {TUNED, DEFAULT} <= mine.keys() and not mine[TUNED].options:
         return "the same, best" if text.endswith("best") else "the same"
     return "" if text == cells.get(DEFAULT) and not any(letter.isdigit() for letter in text) else text
 

@@ -53,9 +53,8 @@ def report(
     sections = tuple(_shown(console, *both) for both in zip(made.sections, files, strict=True))
     written = _write_bag(console, made, bag) if bag is not None else None
     console.next(after_report(here, chosen))
-    return here.answer(
-        filled(ReportReply, made, course=here.course, exercise=chosen.id, sections=sections, bag=written)
-    )
+    named_so = {"course": here.course, "exercise": chosen.id}
+    return here.answer(filled(ReportReply, made, **named_so, sections=sections, bag=written))
 
 
 def _shown(console: Console, section: Section, path: Path) -> SectionReply:

@@ -365,7 +365,16 @@ def _show_summary(
 
 
 def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = "") -> None:
-    told = _alike(rows)
+    files: dict[tuple[str, str], list[Ungraded]] = {}
+    told: list[tuple[str, Ungraded]] = []
+    for row in rows:
+        if row.code == "check_file":  # one line for all whom the same file kept from being graded
+            files.setdefault((row.exercise, row.message), []).append(row)
+        else:
+            told.append((f"{one_line(row.student)} {row.exercise}", row))
+    told += [
+        (f"{those[0].exercise}, {counted(len(those), 'submission')}", those[0]) for those in files.values()
+    ]
     for whose, row in told[:_MOST_TROUBLED]:
         console.item(whose, f"{row.code}: {one_line(row.message)}")
     if len(told) > _MOST_TROUBLED:
@@ -378,21 +387,6 @@ def show_faults(console: Console, done: Regraded, out: Path) -> None:
         console.line((f"{done.faults} hit a fault of the grader and keep what counted:", "bold"))
         _show_troubled(console, done.troubled)
         console.note(f"Once that is right, run {command('grade', 'rerun', out)} again.")
-
-
-def _alike(rows: Sequence[Ungraded]) -> list[tuple[str, Ungraded]]:
-    """Whose work it is that could not be graded: one line for all whom the same file kept from it."""
-    files: dict[tuple[str, str], list[Ungraded]] = {}
-    told: list[tuple[str, Ungraded]] = []
-    for row in rows:
-        if row.code == "check_file":
-            files.setdefault((row.exercise, row.message), []).append(row)
-        else:
-            told.append((f"{one_line(row.student)} {row.exercise}", row))
-    whole = (
-        (f"{those[0].exercise}, {counted(len(those), 'submission')}", those[0]) for those in files.values()
-    )
-    return [*told, *whole]
 
 
 def _mark(summary: Summary) -> str:

@@ -163,7 +163,11 @@ class LineReader:
         """Do what a word asks for; returns the page that it leads to, if any."""
         word, _, rest = typed.partition(" ")
         if typed.startswith("/"):
-            self._search(typed[1:])
+            hits = list(find(self._progress, typed[1:]))
+            for hit in hits:
+                self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
+            if not hits:
+                self._say("Not in this lesson.")
         elif word in {"1", "2", "3"}:
             self._judge(number, int(word))
         elif word in self._does:
@@ -333,13 +337,6 @@ class LineReader:
             return int(rest) - 1
         self._say(f"g takes the number of a page, 1 to {len(self._pages)}.")
         return None
-
-    def _search(self, wanted: str) -> None:
-        hits = list(find(self._progress, wanted))
-        for hit in hits:
-            self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
-        if not hits:
-            self._say("Not in this lesson.")
 
     def _help(self, _rest: str, _number: int) -> None:
         for word, what in _WORDS:

@@ -9,13 +9,12 @@ from course.cli.frame import here
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
 from course.cli.frame.options import ExerciseName, option
-from course.cli.frame.replies import WrittenFile, filled
+from course.cli.frame.replies import filled
 from course.cli.home.advice import after_report
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import ReportReply, SectionReply
 from course.errors import UsageError
-from course.figures.described import Plot
 from course.scoring.failures import Report, Section
 
 
@@ -69,12 +68,8 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
             console.line(item.strip(), indent=2)
     if section.rows:
         console.table_or_facts(section.columns, section.rows)
-    figure = _drawn(console, section.plot, path) if section.plot is not None else None
-    description = section.plot.description if section.plot else ""
-    return filled(SectionReply, section, figure=figure, description=description)
-
-
-def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
+    if (plot := section.plot) is None:
+        return filled(SectionReply, section, figure=None, description="")
     from course.figures.plots import draw, render
 
     with console.working("Drawing"):
@@ -84,7 +79,8 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
         console.line(("Figure: " + plot.description, "dim"))
     # An unchanged figure needs no copy of the old one.
     path.unlink(missing_ok=True)
-    return here.write_told(path, picture, why="report")
+    figure = here.write_told(path, picture, why="report")
+    return filled(SectionReply, section, figure=figure, description=plot.description)
 
 
 def _write_bag(console: Console, made: Report, bag: Path) -> str:

@@ -204,24 +204,21 @@ class _Page:
             self._label(check.status, check.message)
             self._details(check)
         elif self.brief and not self.verbose:
-            self._first_failure(checks)
+            # One check in detail, below a line for each other that does not pass.
+            passing = [check for check in checks if check.status == "pass"]
+            failing = sorted((c for c in checks if c.status != "pass"), key=lambda c: c.status == "skip")
+            if passing:
+                self._label("pass", counted(len(passing), "check"))
+            for check in failing[1:]:
+                why = f"  runs after {check.blocked_by} passes" if check.blocked_by else ""
+                aside = why if check.status == "skip" else f"  [{check.id}]"
+                self._label(check.status, self._title(check), aside)
+            for check in failing[:1]:
+                self.check(check)
         else:
             for check in checks:
                 self.check(check)
         self.console.gap()
-
-    def _first_failure(self, checks: Sequence[CheckResult]) -> None:
-        """One check in detail, below a line for each other that does not pass."""
-        passing = [check for check in checks if check.status == "pass"]
-        failing = sorted((c for c in checks if c.status != "pass"), key=lambda check: check.status == "skip")
-        if passing:
-            self._label("pass", counted(len(passing), "check"))
-        for check in failing[1:]:
-            why = f"  runs after {check.blocked_by} passes" if check.blocked_by else ""
-            aside = why if check.status == "skip" else f"  [{check.id}]"
-            self._label(check.status, self._title(check), aside)
-        for check in failing[:1]:
-            self.check(check)
 
     def unwritten(self, tasks: Tasks) -> None:
         """The functions that are still the stub's, with each advice once; those of the rarer are named."""

@@ -119,16 +119,6 @@ _COLUMNS = (
 )
 
 
-def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
-    """Every row with its truth, its error and whether it is the best of its column."""
-    best, made = best_rows(comparison.rows), []
-    for row in comparison.rows:
-        scenario = SCENARIOS[row.scenario]
-        error = None if row.value is None else scenario.error(row.value)
-        made.append(filled(EngineRow, row, scenario, error=error, best=id(row) in best))
-    return tuple(made)
-
-
 app = group(COMMANDS["engines"].summary)
 
 #: The longest and the shortest step that make sense in the scenarios, s.
@@ -192,7 +182,11 @@ def compare(
         comparison = comparing.compare(request, progress)
     said = findings(comparison.rows)
     _show(console, comparison, said)
-    numbers = rows(comparison)
+    best, numbers = best_rows(comparison.rows), []
+    for row in comparison.rows:  # with its truth, its error and whether it is the best of its column
+        scene = SCENARIOS[row.scenario]
+        error = None if row.value is None else scene.error(row.value)
+        numbers.append(filled(EngineRow, row, scene, error=error, best=id(row) in best))
     plots = _plotted(console, comparison, plot) if plot else ()
     table = None
     if csv:
@@ -213,7 +207,7 @@ def compare(
             quick=comparison.quick,
             engines=comparison.engines,
             scenarios=_scenarios(dict.fromkeys(row.scenario for row in comparison.rows)),
-            rows=numbers,
+            rows=tuple(numbers),
             findings=said,
             plots=plots,
             csv=table,
@@ -294,6 +288,19 @@ def _show(console: Console, comparison: Comparison, findings: Sequence[str]) -> 
             console.item("-", sentence) if console.fancy else console.line(f"- {sentence}", indent=2)
 
 
+def _origins(console: Console, comparison: Comparison) -> None:
+    cached = sorted({row.measured for row in comparison.rows if row.origin == "cached"})
+    console.note(("This machine: ", "bold"), str(comparison.machine))
+    if cached:
+        when = cached[0] if cached[0] == cached[-1] else f"{cached[0]} to {cached[-1]}"
+        console.note(f"Remembered from {when}; --fresh measures again.")
+    if comparison.reference is not None:
+        where = f" were not measured here: {comparison.reference.label}."
+        console.note(("Rows marked reference", "bold"), where)
+    if comparison.quick:
+        console.note("Quick: fewer starts, steps and repetitions; leave --quick out for the whole.")
+
+
 def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: frozenset[int]) -> None:
     if not console.quiet:
         console.heading(scenario.title, scenario.id)
@@ -322,11 +329,9 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
 
 def _tuned(cells: Mapping[Setting, str], rows: Sequence[Row], engine: str, dt: float) -> str:
     """The well-set result of the engine; a word where it has nothing to set."""
-    tuned = next((r for r in rows if (r.engine, r.setting, r.dt) == (engine, TUNED, dt) and r.ok), None)
-    default = next((r for r in rows if (r.engine, r.setting, r.dt) == (engine, DEFAULT, dt) and r.ok), None)
-    same = tuned is not None and default is not None and not tuned.options
+    mine = {row.setting: row for row in reversed(rows) if (row.engine, row.dt) == (engine, dt) and row.ok}
     text = cells.get(TUNED, "")
-    if same and text:
+    if text and {TUNED, DEFAULT} <= mine.keys() and not mine[TUNED].options:
         return "the same, best" if text.endswith("best") else "the same"
     return "" if text == cells.get(DEFAULT) and not any(letter.isdigit() for letter in text) else text
 
@@ -400,16 +405,3 @@ def _short(value: float) -> str:
 
 def _unit(text: str, scenario: Scenario) -> str:
     return text if scenario.unit == "1" else f"{text}{'' if scenario.unit == 'x' else ' '}{scenario.unit}"
-
-
-def _origins(console: Console, comparison: Comparison) -> None:
-    cached = sorted({row.measured for row in comparison.rows if row.origin == "cached"})
-    console.note(("This machine: ", "bold"), str(comparison.machine))
-    if cached:
-        when = cached[0] if cached[0] == cached[-1] else f"{cached[0]} to {cached[-1]}"
-        console.note(f"Remembered from {when}; --fresh measures again.")
-    if comparison.reference is not None:
-        where = f" were not measured here: {comparison.reference.label}."
-        console.note(("Rows marked reference", "bold"), where)
-    if comparison.quick:
-        console.note("Quick: fewer starts, steps and repetitions; leave --quick out for the whole.")

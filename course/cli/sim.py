@@ -13,7 +13,7 @@ from course.cli.frame.options import argument, option, simulation_ids, simulatio
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import UsageError
-from course.simulations.base import Result, Row, Simulation, describe
+from course.simulations.base import Result, Row, describe
 from course.simulations.base import run as run_simulation
 from course.simulations.registry import CHAPTER, SIMULATIONS, get
 
@@ -196,7 +196,19 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
     csv = here.target(csv, "--csv", ("csv",)) if csv else None
     with console.working(f"Running {simulation.id}"):
         result = run_simulation(simulation, pairs)
-    _show(console, simulation, result)
+    if not console.quiet:
+        console.heading(simulation.title)
+        changed = [p.name for p in simulation.parameters if result.settings[p.name] != p.default]
+        values = ((one, result.settings[one.name]) for one in simulation.parameters)
+        texts = ((one, value if isinstance(value, str) else f"{value:.6g}") for one, value in values)
+        every = ", ".join(f"{one.name} {_with_unit(text, one.unit)}" for one, text in texts)
+        console.line((every, "dim"))
+        if changed:
+            console.line(f"Changed: {', '.join(changed)}.")
+        console.figure(lambda: _drawn(result))
+        heads = ("Measured", "Simulated", "Theory", "Error")
+        console.table_or_facts(heads, [_cells(row) for row in result.rows])
+    console.line((result.finding, "bold"))
     plotted = written = None
     if plot:
         from course.figures.experiments import render
@@ -217,30 +229,10 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
 # -- on the screen ---------------------------------------------------------------------------------------
 
 
-def _show(console: Console, simulation: Simulation, result: Result) -> None:
-    if not console.quiet:
-        console.heading(simulation.title)
-        changed = [p.name for p in simulation.parameters if result.settings[p.name] != p.default]
-        console.line((_settings(simulation, result), "dim"))
-        if changed:
-            console.line(f"Changed: {', '.join(changed)}.")
-        console.figure(lambda: _drawn(result))
-        heads = ("Measured", "Simulated", "Theory", "Error")
-        console.table_or_facts(heads, [_cells(row) for row in result.rows])
-    console.line((result.finding, "bold"))
-
-
 def _drawn(result: Result) -> Any:
     from course.figures.experiments import draw
 
     return draw(result)
-
-
-def _settings(simulation: Simulation, result: Result) -> str:
-    """All settings in a line: "height 10 m, step 0.01 s"."""
-    values = ((one, result.settings[one.name]) for one in simulation.parameters)
-    texts = ((one, value if isinstance(value, str) else f"{value:.6g}") for one, value in values)
-    return ", ".join(f"{one.name} {_with_unit(text, one.unit)}" for one, text in texts)
 
 
 def _cells(row: Row) -> tuple[str, str, str, str]:

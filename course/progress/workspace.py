@@ -85,8 +85,28 @@ class Workspace:
     @classmethod
     def read(cls, root: Path) -> Workspace:
         """The workspace at ``root``; raises what ``find`` raises."""
-        course_id, version = _read_marker(root / MARKER)
-        return cls(root=root, course_id=course_id, version=version)
+        marker = root / MARKER
+        try:
+            # An editor of another system may have put a byte-order mark in front; TOML allows none.
+            table = toml(read_bytes(marker).decode("utf-8-sig"))
+        except tomllib.TOMLDecodeError as error:
+            line = re.search(r"line (\d+)", str(error))
+            problem = f"not valid TOML: {error}."
+            raise _bad_marker(marker, int(line[1]) if line else None, problem) from error
+        except (OSError, UnicodeDecodeError) as error:
+            raise _bad_marker(marker, None, f"cannot be read: {error}.") from error
+        version = table.get("format_version")
+        if isinstance(version, int) and version > FORMAT_VERSION:
+            said = f"{marker} was written by a newer version of the course (format {version})."
+            fix = "Install that version or a later one; nothing here was touched."
+            raise MissingCapabilityError(said, help=fix, code="workspace_too_new")
+        course = table.get("course")
+        if version != FORMAT_VERSION or not isinstance(course, dict):
+            raise _bad_marker(marker, None, "format_version or [course] is missing.")
+        name, content = course.get("id"), course.get("version")
+        if not isinstance(name, str) or not isinstance(content, str):
+            raise _bad_marker(marker, None, "[course] needs an id and a version, both strings.")
+        return cls(root=root, course_id=name, version=content)
 
     @classmethod
     def create(cls, root: Path, course_id: str, version: str) -> Workspace:
@@ -286,31 +306,6 @@ def _write_new(path: Path, data: bytes) -> None:
 
 def _normal(data: bytes) -> bytes:
     return data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
-
-
-def _read_marker(marker: Path) -> tuple[str, str]:
-    """Course id and version out of a ``course.toml``."""
-    try:
-        # An editor of another system may have put a byte-order mark in front; TOML allows none.
-        table = toml(read_bytes(marker).decode("utf-8-sig"))
-    except tomllib.TOMLDecodeError as error:
-        line = re.search(r"line (\d+)", str(error))
-        problem = f"not valid TOML: {error}."
-        raise _bad_marker(marker, int(line[1]) if line else None, problem) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise _bad_marker(marker, None, f"cannot be read: {error}.") from error
-    version = table.get("format_version")
-    if isinstance(version, int) and version > FORMAT_VERSION:
-        said = f"{marker} was written by a newer version of the course (format {version})."
-        fix = "Install that version or a later one; nothing here was touched."
-        raise MissingCapabilityError(said, help=fix, code="workspace_too_new")
-    course = table.get("course")
-    if version != FORMAT_VERSION or not isinstance(course, dict):
-        raise _bad_marker(marker, None, "format_version or [course] is missing.")
-    name, content = course.get("id"), course.get("version")
-    if not isinstance(name, str) or not isinstance(content, str):
-        raise _bad_marker(marker, None, "[course] needs an id and a version, both strings.")
-    return name, content
 
 
 def _bad_marker(marker: Path, line: int | None, problem: str) -> ContentError:

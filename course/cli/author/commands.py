@@ -16,7 +16,7 @@ from course.authoring.exercises import diagnosis
 from course.authoring.exercises.files import find_blanks, write_points, write_times
 from course.authoring.exercises.grading import write_pack
 from course.authoring.exercises.proofs import MutantOutcome, run_mutants
-from course.authoring.report import AuditReport, AuthorProblem, Findings
+from course.authoring.report import AuthorProblem, Findings
 from course.catalog.load import Catalog
 from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.catalog.models import CourseRef, Exercise
@@ -350,17 +350,6 @@ def check(
     console, catalog = current(), load_catalog()
     with meter(console) as on_progress:
         report = audit(catalog, name, on_progress=on_progress, refused=refused, is_command=is_command)
-    _show_report(console, catalog, report)
-    try:
-        course = catalog.ref
-    except ContentError:
-        course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported
-    code = 0 if report.ok else 1
-    seconds = round(report.seconds, 3)
-    return console.answer(filled(AuthorCheck, report, exit_code=code, course=course, seconds=seconds))
-
-
-def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> None:
     blanks = [problem for problem in report.problems if problem.code == "blank"]
     for problem in blanks:
         console.line((problem.where, "bold"), f"  {problem.message}")
@@ -379,6 +368,13 @@ def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
     level = f" at {report.isolation}" if report.isolation else ""
     found = ("All is well", "green") if report.ok else (counted(len(report.problems), "problem"), "red")
     console.line(found, f"{':' if report.ok else ' in'} {looked}{level} in {report.seconds:.1f} s.")
+    try:
+        course = catalog.ref
+    except ContentError:
+        course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported
+    code = 0 if report.ok else 1
+    seconds = round(report.seconds, 3)
+    return console.answer(filled(AuthorCheck, report, exit_code=code, course=course, seconds=seconds))
 
 
 @app.command(epilog="Example: course author build collisions")

@@ -62,7 +62,16 @@ class Here:
         if wanted is not None:
             # Completion of a folder name leaves a separator at its end.
             chosen = self.catalog.exercise_called(wanted.rstrip("/\\"))
-            self._say_renumbered(chosen, wanted)
+            # Of a number that meant another exercise before 2.0, one that was begun here then: name both.
+            before = next((one for one in self.catalog.exercises() if str(one.number) == wanted), chosen)
+            begun: tuple[Event, ...] = ()
+            with suppress(CourseError):  # a damaged record is another command's to tell
+                begun = self.workspace.store.events("start", before.id) if before is not chosen else ()
+            if any(str(event.data.get("version")).startswith("1.") for event in begun):
+                current().warn(
+                    f"{wanted} is {chosen.id}, by the order of the lessons; before 2.0 it was {before.id}, "
+                    f"which is {self.catalog.place_of(before)} now."
+                )
             return chosen
         started = self.workspace.started()
         for name in (self._folder_name(), self._last_worked_on(), started[0] if len(started) == 1 else ""):
@@ -77,18 +86,6 @@ class Here:
     @property
     def _known(self) -> tuple[str, ...]:
         return (*self.catalog.exercise_ids(), *self.catalog.warm_up_ids())
-
-    def _say_renumbered(self, chosen: Exercise, number: str) -> None:
-        """Of a number that meant another exercise before 2.0, one that was begun here then: name both."""
-        before = next((one for one in self.catalog.exercises() if str(one.number) == number), chosen)
-        begun: tuple[Event, ...] = ()
-        with suppress(CourseError):  # a damaged record is another command's to tell
-            begun = self.workspace.store.events("start", before.id) if before is not chosen else ()
-        if any(str(event.data.get("version")).startswith("1.") for event in begun):
-            current().warn(
-                f"{number} is {chosen.id}, by the order of the lessons; before 2.0 it was {before.id}, "
-                f"which is {self.catalog.place_of(before)} now."
-            )
 
     def nothing_started(self) -> NotFoundError:
         """The error that no exercise has been started; its advice names the first one."""

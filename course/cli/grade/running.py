@@ -114,23 +114,17 @@ def run(
 
     try:
         summary, tried = opt.agreed(console, grading, yes=yes)
-    except KeyboardInterrupt:
-        raise _interrupted(reached, out) from None
+    except KeyboardInterrupt:  # what is there after Ctrl-C, and how it goes on
+        done, total = reached
+        words = f"all of the work of {done} of {total} students is graded" if total else "nothing was graded"
+        kept = f"Interrupted: {words}. What is graded is kept, and the rest is not graded yet."
+        none = "Interrupted before anything was graded; nothing was written."
+        fix = "The same command with --resume goes on." if out.exists() else ""
+        told = CourseError(kept if out.exists() else none, help=fix, code="interrupted")
+        told.exit_code = INTERRUPTED
+        raise told from None
     _show_summary(console, summary, out, options, tried)
     return summary.exit_code
-
-
-def _interrupted(reached: list[int], out: Path) -> CourseError:
-    """What is there after Ctrl-C, and how it goes on."""
-    done, total = reached
-    if not out.exists():
-        told = CourseError("Interrupted before anything was graded; nothing was written.", code="interrupted")
-    else:
-        words = f"all of the work of {done} of {total} students is graded" if total else "nothing was graded"
-        message = f"Interrupted: {words}. What is graded is kept, and the rest is not graded yet."
-        told = CourseError(message, help="The same command with --resume goes on.", code="interrupted")
-    told.exit_code = INTERRUPTED
-    return told
 
 
 def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out: Path) -> None:
@@ -371,7 +365,16 @@ def _show_summary(
 
 
 def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = "") -> None:
-    told = _alike(rows)
+    files: dict[tuple[str, str], list[Ungraded]] = {}
+    told: list[tuple[str, Ungraded]] = []
+    for row in rows:
+        if row.code == "check_file":  # one line for all whom the same file kept from being graded
+            files.setdefault((row.exercise, row.message), []).append(row)
+        else:
+            told.append((f"{one_line(row.student)} {row.exercise}", row))
+    told += [
+        (f"{those[0].exercise}, {counted(len(those), 'submission')}", those[0]) for those in files.values()
+    ]
     for whose, row in told[:_MOST_TROUBLED]:
         console.item(whose, f"{row.code}: {one_line(row.message)}")
     if len(told) > _MOST_TROUBLED:
@@ -384,21 +387,6 @@ def show_faults(console: Console, done: Regraded, out: Path) -> None:
         console.line((f"{done.faults} hit a fault of the grader and keep what counted:", "bold"))
         _show_troubled(console, done.troubled)
         console.note(f"Once that is right, run {command('grade', 'rerun', out)} again.")
-
-
-def _alike(rows: Sequence[Ungraded]) -> list[tuple[str, Ungraded]]:
-    """Whose work it is that could not be graded: one line for all whom the same file kept from it."""
-    files: dict[tuple[str, str], list[Ungraded]] = {}
-    told: list[tuple[str, Ungraded]] = []
-    for row in rows:
-        if row.code == "check_file":
-            files.setdefault((row.exercise, row.message), []).append(row)
-        else:
-            told.append((f"{one_line(row.student)} {row.exercise}", row))
-    whole = (
-        (f"{those[0].exercise}, {counted(len(those), 'submission')}", those[0]) for those in files.values()
-    )
-    return [*told, *whole]
 
 
 def _mark(summary: Summary) -> str:

@@ -401,9 +401,9 @@ class Learning:
             often = "a prediction was" if count == 1 else f"{count} predictions were"
             why.setdefault(place, []).append(f"{often} wrong")
         for place, reasons in sorted(why.items(), key=lambda item: -len(item[1])):
-            lesson, title, command = place.partition("#")[0], self._title(place), f"course lesson {place}"
+            named = {"lesson": place.partition("#")[0], "title": self._title(place)}
             yield replies.Revisit(
-                lesson=lesson, section=place, title=title, why=tuple(reasons), command=command
+                **named, section=place, why=tuple(reasons), command=f"course lesson {place}"
             )
 
     def _title(self, place: str) -> str:

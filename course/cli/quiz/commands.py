@@ -188,14 +188,21 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
         return _end_review(console, desk, None, [])
     if answers is None and not questions:
         _need_terminal(console, "review")
+    marked: list[MarkedQuestion] = []
     if answers is not None:
-        return _review_file(console, desk, answers, seed, ids)
+        file = read_answers(answers)
+        seed = _seed("review", file, seed, file.seed)
+        posed = desk.bank.pose(seed, only=ids)
+        options = file.choose(posed, desk.bank, seed)
+        marked = [reviewed(one, options[one.question], seed, desk.here.record) for one in posed]
+        for number, given in enumerate(marked, start=1):
+            screen.show_marked(console, given, number)
+        return _end_review(console, desk, seed, marked)
     seed = desk.new_seed() if seed is None else seed
     posed = desk.bank.pose(seed, only=ids)
     if questions:
         return screen.hand_out(console, desk.here, posed, seed, "review")
     console.note(screen.KEYS)
-    marked: list[MarkedQuestion] = []
     for number, question in enumerate(posed, start=1):
         one = screen.ask(console, question, number, len(posed))
         if one is None:
@@ -203,19 +210,6 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
             return INTERRUPTED
         marked.append(reviewed(question, one.id, seed, desk.here.record))
         screen.show_marked(console, marked[-1], number)
-    return _end_review(console, desk, seed, marked)
-
-
-def _review_file(
-    console: Console, desk: screen.Desk, path: Path, seed: int | None, ids: Sequence[str]
-) -> int:
-    file = read_answers(path)
-    seed = _seed("review", file, seed, file.seed)
-    posed = desk.bank.pose(seed, only=ids)
-    options = file.choose(posed, desk.bank, seed)
-    marked = [reviewed(one, options[one.question], seed, desk.here.record) for one in posed]
-    for number, one in enumerate(marked, start=1):
-        screen.show_marked(console, one, number)
     return _end_review(console, desk, seed, marked)
 
 

@@ -171,8 +171,7 @@ def ask(console: Console, posed: PosedQuestion, number: int, total: int) -> Choi
         typed = console.ask(_PROMPT)
         if typed is None or typed.lower() in {"q", "quit"}:
             return None
-        choice = posed.choice(typed)
-        if choice is not None:
+        if (choice := posed.choice(typed)) is not None:
             return choice
         console.line(KEYS)
 
@@ -197,19 +196,15 @@ def show_result(console: Console, result: Result) -> None:
         score = f"{result.score} of {result.total} right, {needed(result.total)} needed: "
         console.line((score, "bold"), verdict, (". All options: course quiz history --all", "dim"))
         for number, marked in enumerate(result.marked, start=1):
-            _show_briefly(console, marked, number)
-
-
-def _show_briefly(console: Console, marked: MarkedQuestion, number: int) -> None:
-    """One answered question; if it was missed, both answers and why the student's is wrong."""
-    _show_outcome(console, marked, number)
-    if not marked.right:
-        answer = _lettered(marked.chosen)
-        if console.fancy:  # it was read a moment ago, and a line of it says which it was
-            answer = shorten(answer, max(20, console.width - _LABEL - 4), placeholder=" …")
-        console.item("Your answer", answer, style="red", width=_LABEL)
-        console.line(marked.chosen.explanation, indent=4)
-        console.item("Right", _lettered(marked.posed.key), style="green", width=_LABEL)
+            _show_outcome(console, marked, number)
+            if marked.right:
+                continue
+            answer = _lettered(marked.chosen)
+            if console.fancy:  # it was read a moment ago, and a line of it says which it was
+                answer = shorten(answer, max(20, console.width - _LABEL - 4), placeholder=" …")
+            console.item("Your answer", answer, style="red", width=_LABEL)
+            console.line(marked.chosen.explanation, indent=4)
+            console.item("Right", _lettered(marked.posed.key), style="green", width=_LABEL)
 
 
 def _show_outcome(console: Console, marked: MarkedQuestion, number: int) -> None:

@@ -62,7 +62,10 @@ class LineReader:
         self._script = read_script(lesson, catalog.tasks(lesson.id))
         self._pages = paginate(self._script.blocks)
         self._starts = list(itertools.accumulate(map(len, self._pages), initial=0))
-        self._events = _events(here, lesson)
+        self._events: tuple[Event, ...] = ()
+        with contextlib.suppress(CourseError):  # where the record cannot be read, there is none
+            store = here.workspace.store if here else None
+            self._events = lesson_events(store, lesson.id, catalog.syllabus.split)
         self._progress = InProgress(self._script, self._events, self._write, catalog.version)
         self._files: dict[int, Path] = {}  # by number of the cell that the student changes in it
         self._bench = Bench(self._progress, self._ran)
@@ -160,7 +163,11 @@ class LineReader:
         """Do what a word asks for; returns the page that it leads to, if any."""
         word, _, rest = typed.partition(" ")
         if typed.startswith("/"):
-            self._search(typed[1:])
+            hits = list(find(self._progress, typed[1:]))
+            for hit in hits:
+                self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
+            if not hits:
+                self._say("Not in this lesson.")
         elif word in {"1", "2", "3"}:
             self._judge(number, int(word))
         elif word in self._does:
@@ -331,13 +338,6 @@ class LineReader:
         self._say(f"g takes the number of a page, 1 to {len(self._pages)}.")
         return None
 
-    def _search(self, wanted: str) -> None:
-        hits = list(find(self._progress, wanted))
-        for hit in hits:
-            self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
-        if not hits:
-            self._say("Not in this lesson.")
-
     def _help(self, _rest: str, _number: int) -> None:
         for word, what in _WORDS:
             self._console.item(word, what)
@@ -348,13 +348,6 @@ class LineReader:
     def _write(self, kind: str, subject: str, data: Mapping[str, object]) -> None:
         if self._here is not None:
             self._here.record(kind, subject, dict(data))
-
-
-def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:
-    """The recorded events of a lesson; none where the record cannot be read."""
-    with contextlib.suppress(CourseError):
-        return lesson_events(here.workspace.store, lesson.id, here.catalog.syllabus.split) if here else ()
-    return ()
 
 
 def _page(events: Sequence[Event], block: int, starts: Sequence[int]) -> int:

@@ -262,7 +262,18 @@ def warmup(
         return _list(console, lesson)
     here = Here.load()
     chosen = _warm_up(here.catalog, name)
-    return check_work(chosen.id, verbose=verbose) if check else _begin(console, here, chosen)
+    if check:
+        return check_work(chosen.id, verbose=verbose)
+    if not console.quiet and not console.json:
+        show_text(console, here, chosen)
+    files = put(console, here, chosen)
+    step = f"course check {chosen.id}"
+    about = f"about {counted(chosen.minutes, 'minute')}"
+    console.note(f"Write in {chosen.place}/{chosen.module} with your own editor, {about}.")
+    console.note(f"Check it:          {step}")
+    console.note(f"On every save:     course watch {chosen.id}")
+    console.note(f"Still failing:     course hint {chosen.id}")
+    return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))
 
 
 def _warm_up(catalog: Catalog, name: str) -> Exercise:
@@ -312,19 +323,6 @@ def _list(console: Console, lesson: str = "") -> int:
     if step:
         console.note(f"Next: {step}" if here else f"In a workspace (course init): {step}")
     return console.answer(WarmUps(warm_ups=states, next=NextStep(step) if step else None))
-
-
-def _begin(console: Console, here: Here, chosen: Exercise) -> int:
-    if not console.quiet and not console.json:
-        show_text(console, here, chosen)
-    files = put(console, here, chosen)
-    step = f"course check {chosen.id}"
-    about = f"about {counted(chosen.minutes, 'minute')}"
-    console.note(f"Write in {chosen.place}/{chosen.module} with your own editor, {about}.")
-    console.note(f"Check it:          {step}")
-    console.note(f"On every save:     course watch {chosen.id}")
-    console.note(f"Still failing:     course hint {chosen.id}")
-    return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))
 
 
 def show_text(console: Console, here: Here, chosen: Exercise) -> None:

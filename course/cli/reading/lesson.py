@@ -160,7 +160,7 @@ class PlainPrinter(_Printer):
                 self._verbatim("Text", text)
             case b.MathBlock(spoken=spoken):
                 for row in spoken.splitlines():
-                    self._prose(f"Formula: {row}", whole=True)
+                    self._say(f"Formula: {row}")
             case b.Diagram(description=description):
                 self._say(f"Diagram: {description}")
             case b.Figure():
@@ -185,8 +185,8 @@ class PlainPrinter(_Printer):
             case _:
                 assert_never(block)
 
-    def _prose(self, text: str, *, whole: bool = False) -> None:
-        for line in [text] if whole else sentences(text):
+    def _prose(self, text: str) -> None:
+        for line in sentences(text):
             self._say(line)
 
     def _labelled(self, label: str, inner: tuple[b.Block, ...]) -> None:
@@ -254,13 +254,8 @@ class PlainPrinter(_Printer):
 
 def sentences(text: str) -> list[str]:
     """A paragraph cut after each sentence."""
-    out, start = [], 0
-    for match in _SENTENCE_END.finditer(text):
-        end = match.start() + len(match.group().rstrip())
-        out.append(text[start:end].strip())
-        start = end
-    out.append(text[start:].strip())
-    return [sentence for sentence in out if sentence]
+    cut = _SENTENCE_END.sub(lambda end: f"{end[0].rstrip()}\0", text)
+    return [sentence.strip() for sentence in cut.split("\0") if sentence.strip()]
 
 
 # ---
@@ -402,8 +397,13 @@ class FancyPrinter(_Printer):
         header = [self._text(cell) for cell in table.header]
         rows = [[self._text(cell) for cell in row] for row in table.rows]
         widths = _column_widths(header, rows, self._prose)
-        if widths is None:
-            return _facts(header, rows)
+        if widths is None:  # too wide: a row at a time
+            facts: list[RenderableType] = []
+            for row in rows:
+                facts.append(Text.assemble(row[0], style="bold"))
+                for name, cell in zip(header[1:], row[1:], strict=True):
+                    facts.append(Padding(Text.assemble(name, ": ", cell), (0, 0, 0, 2)))
+            return Group(*facts)
         shown = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="bold")
         for cell, align, width in zip(header, table.align, widths, strict=True):
             shown.add_column(cell, justify="right" if align == "right" else "left", width=width)
@@ -485,22 +485,16 @@ class _Prefixed:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Segment]:
         room = options.update_width(options.max_width - len(self.mark))
         for line in console.render_lines(self.inner, room, pad=False):
-            kept = _stripped(line)
+            kept = list(line)  # without the blanks at its end; control codes stay
+            while kept and not kept[-1].control and not kept[-1].text.strip():
+                kept.pop()
+            if kept and not kept[-1].control:
+                kept[-1] = Segment(kept[-1].text.rstrip(), kept[-1].style)
             if kept or self.style:
                 yield Segment(self.mark, self.style)
             for text, style, control in kept:
                 yield Segment(text.replace(KEEP, " "), style, control)
             yield Segment.line()
-
-
-def _stripped(line: list[Segment]) -> list[Segment]:
-    """A line without the blanks at its end; control codes stay."""
-    kept = list(line)
-    while kept and not kept[-1].control and not kept[-1].text.strip():
-        kept.pop()
-    if kept and not kept[-1].control:
-        kept[-1] = Segment(kept[-1].text.rstrip(), kept[-1].style)
-    return kept
 
 
 def _commands(commands: tuple[b.Command, ...]) -> RenderableType:
@@ -532,16 +526,6 @@ def _column_widths(header: list[Text], rows: list[list[Text]], room: int) -> lis
     if sum(wanted) <= spare:
         return most
     return [low + spare * want // sum(wanted) for low, want in zip(least, wanted, strict=True)]
-
-
-def _facts(header: list[Text], rows: list[list[Text]]) -> RenderableType:
-    """A table that is too wide, a row at a time."""
-    shown: list[RenderableType] = []
-    for row in rows:
-        shown.append(Text.assemble(row[0], style="bold"))
-        for name, cell in zip(header[1:], row[1:], strict=True):
-            shown.append(Padding(Text.assemble(name, ": ", cell), (0, 0, 0, 2)))
-    return Group(*shown)
 
 
 Printer = PlainPrinter | FancyPrinter

@@ -193,28 +193,23 @@ def _list(console: Console, name: str | None) -> None:
     found = scenes() if one is None else (one.scene,)
     if not found:
         raise NotFoundError("There are no scenes.", help="Install the course again.", code="no_scenes")
-    for place, scene in enumerate(found, 1):
-        _describe(console, scene, place, one.path if one else None)
+    for place, scene in enumerate(found if one is None else (), 1):
+        console.item(f"{place:2d}", f"{scene.id}: {scene.teaches}", width=3)
+    if one is not None:
+        entry = _entry(one.scene)
+        console.heading(entry.id, entry.title)
+        console.line(entry.note)
+        if entry.question:
+            console.item("guess", entry.question, width=5)
+        for parameter in entry.parameters:
+            default = "each body's own" if parameter.default is None else f"{parameter.default:g}"
+            unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+            span = f"{parameter.low:g} to {parameter.high:g}"
+            console.item("set", f"{parameter.name}={default}{unit} ({span}): {parameter.meaning}", width=5)
+        console.item("after", entry.after, width=5)
+        console.item("file", str(one.path), width=5)
     console.note((f"Next: course sandbox play {name or found[0].id}", "bold"))
     console.emit(playing.SandboxList(scenes=tuple(_entry(scene) for scene in found)))
-
-
-def _describe(console: Console, scene: Scene, place: int, path: Path | None) -> None:
-    if path is None:
-        console.item(f"{place:2d}", f"{scene.id}: {scene.teaches}", width=3)
-        return
-    console.heading(scene.id, scene.title)
-    console.line(" ".join(scene.note.split()))
-    entry = _entry(scene)
-    if entry.question:
-        console.item("guess", entry.question, width=5)
-    for parameter in entry.parameters:
-        default = "each body's own" if parameter.default is None else f"{parameter.default:g}"
-        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-        span = f"{parameter.low:g} to {parameter.high:g}"
-        console.item("set", f"{parameter.name}={default}{unit} ({span}): {parameter.meaning}", width=5)
-    console.item("after", scene.after, width=5)
-    console.item("file", str(path), width=5)
 
 
 def _entry(scene: Scene) -> playing.SandboxEntry:

@@ -431,26 +431,22 @@ def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], op
             console.line(sentence)
         for probe in chosen.scene.probe:
             console.line(f"{probe.name}: {_happened(done.probes[probe.name], probe.unit)}")
-    _show_comparison(console, done.comparison)
+    if (comparison := done.comparison) is not None:
+        if not console.quiet:
+            console.line((comparison.question, "bold"))
+            unit = "" if comparison.unit == "1" else comparison.unit
+            rows = [("theory", comparison.theory), ("simulation", comparison.simulation)]
+            if comparison.guess is not None:
+                rows.insert(0, ("your guess", comparison.guess))
+            for name, value in rows:
+                console.item(name, _happened(value, unit), width=10)
+        console.line((comparison.verdict, "bold"))
+        console.note(comparison.why)
     console.note(("Think: ", "bold"), chosen.scene.after)
 
 
 def _happened(value: float, unit: str) -> str:
     return "did not happen" if math.isnan(value) else f"{value:.6g} {unit}".rstrip()
-
-
-def _show_comparison(console: Console, comparison: Comparison | None) -> None:
-    if comparison is None:
-        return
-    if not console.quiet:
-        console.line((comparison.question, "bold"))
-        rows = [("theory", comparison.theory), ("simulation", comparison.simulation)]
-        if comparison.guess is not None:
-            rows.insert(0, ("your guess", comparison.guess))
-        for name, value in rows:
-            console.item(name, _happened(value, "" if comparison.unit == "1" else comparison.unit), width=10)
-    console.line((comparison.verdict, "bold"))
-    console.note(comparison.why)
 
 
 def _keep(chosen: Chosen, comparison: Comparison | None) -> None:

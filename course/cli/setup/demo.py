@@ -112,7 +112,11 @@ def demo() -> int:
             _say_next(console)
             return 0
         after = _motion(console, session, fixed, passes=True)
-    change = _change(mistaken, fixed.source.decode())
+    # The lines that differ, as a diff without its head, indented as little as possible.
+    lines = difflib.ndiff(mistaken.splitlines(), fixed.source.decode().splitlines())
+    changed = [line for line in lines if line[:2] in {"- ", "+ "}]
+    margin = min(len(line) - 2 - len(line[2:].lstrip()) for line in changed)
+    change = tuple(line[:2] + line[2 + margin :] for line in changed)
     _show_fixed(console, example, before, after, change)
     _say_next(console)
     return console.answer(
@@ -241,14 +245,6 @@ def worked_example(catalog: Catalog) -> Exercise:
     )
 
 
-def _change(before: str, after: str) -> tuple[str, ...]:
-    """The lines that differ, as a diff without its head, indented as little as possible."""
-    lines = difflib.ndiff(before.splitlines(), after.splitlines())
-    changed = [line for line in lines if line[:2] in {"- ", "+ "}]
-    margin = min(len(line) - 2 - len(line[2:].lstrip()) for line in changed)
-    return tuple(line[:2] + line[2 + margin :] for line in changed)
-
-
 def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     """Both motions, where the terminal can show a picture."""
     if not console.draws:
@@ -261,15 +257,6 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     columns, rows = console.width, _PANEL_ROWS * (1 if wide else 2)
     if console.interactive:  # otherwise the output is a file, or the picture of a page
         rows = max(_PANEL_ROWS // 2, min(rows, console.height - _WORDS))
-    with console.working("Drawing"):
-        drawn = in_cells(lambda: draw(_plot(before, after, wide=wide)), columns, rows)
-    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
-    for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
-        console.rich().print(line)
-    console.line(("Grey: the motion of the other panel.", "dim"))
-
-
-def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
     # Each with the other in grey: then both have the same axes, and the growth shows.
     panels = tuple(
         Panel(
@@ -280,4 +267,10 @@ def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
         )
         for title, motion, other in (("before", before, after), ("after", after, before))
     )
-    return Plot("", panels, columns=2 if wide else 1)
+    plot = Plot("", panels, columns=2 if wide else 1)
+    with console.working("Drawing"):
+        drawn = in_cells(lambda: draw(plot), columns, rows)
+    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
+    for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
+        console.rich().print(line)
+    console.line(("Grey: the motion of the other panel.", "dim"))

@@ -12,9 +12,8 @@ from typing import Annotated
 
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
-from course.cli.frame import here
 from course.cli.frame.console import current
-from course.cli.frame.here import catalog_of, cwd, load_catalog, named
+from course.cli.frame.here import catalog_of, cwd, load_catalog, named, write_told
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import Envelope, NextStep, WrittenFile
 from course.errors import CourseError, NotFoundError, UsageError
@@ -76,25 +75,6 @@ def usable(requirement: str | None) -> str | None:
         fix = "Give what you would write after `pip install`: an address, a path or a name."
         raise UsageError(problem, help=fix, code="bad_requirement")
     return requirement
-
-
-def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | None) -> list[WrittenFile]:
-    """Write the files of some kinds into a workspace; a copy of each replaced file is kept.
-
-    Args:
-        requirement: where pip gets the course from; None for the wheel in ``wheels/``.
-    """
-    written = []
-    for kind in kinds:
-        name, text = KINDS[kind]
-        path = root / name
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            problem = f"The folder {path.parent} cannot be made ({error.strerror or error})."
-            raise UsageError(problem, code="not_writable") from error
-        written.append(here.write_told(path, text(requirement).encode("utf-8"), why="init"))
-    return written
 
 
 def chosen_kinds(text: str) -> tuple[str, ...]:
@@ -210,7 +190,14 @@ def init(
         workspace = Workspace.read(root)
         catalog_of(workspace)
         console.line(f"{root} is a workspace already" + ("." if kinds else "; nothing was changed."))
-    written = write_surroundings(root, kinds, requirement)
+    written = []
+    for name, text in (KINDS[kind] for kind in kinds):
+        try:
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            problem = f"The folder {(root / name).parent} cannot be made ({error.strerror or error})."
+            raise UsageError(problem, code="not_writable") from error
+        written.append(write_told(root / name, text(requirement).encode("utf-8"), why="init"))
     if requirement is None and {"github", "devcontainer"} & set(kinds) and not any(root.glob(WHEELS)):
         console.note(
             "It installs the course from a wheel in wheels/, and none is there yet: put the one that your "

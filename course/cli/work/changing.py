@@ -102,8 +102,20 @@ def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would b
     console, here = current(), Here.load()
     old, new = here.workspace.version, here.catalog.version
     changes = tuple(_updates(here, dry_run=dry_run))
+    was, put = ("would be", "would be put") if dry_run else ("was", "is")
     for change in changes:
-        console.line(_sentence(here, change, dry_run=dry_run))
+        name, beside, old_one = (
+            here.workspace.shown(Path(path or "")) for path in (change.path, change.new, change.backup)
+        )
+        kept = f" The old one is kept at {old_one}." if change.backup else ""
+        said = {
+            "replace": f"{was} replaced by the newer one; you had not edited it.{kept}",
+            "merge": f"newer text {was} put around your work.{kept}",
+            "beside": f"you edited it, so it stays; the newer one {put} beside it as {beside}.{kept}",
+            "missing": "not there, and left so; `course start` would put it back.",
+            "current": "up to date.",
+        }
+        console.line(f"{name}: {said[change.action]}")
     if not any(change.action in {"replace", "beside", "merge"} for change in changes):
         console.line("Everything here is up to date with the installed course.")
     elif dry_run:
@@ -162,20 +174,6 @@ def _put(path: Path, beside: str, new: bytes, action: str, *, dry_run: bool) -> 
     to = path.with_name(beside) if action == "beside" else path
     kept = None if dry_run else write(to, new, why="update").backup
     return Change(str(path), action, str(to) if to != path else None, kept.backup if kept else None)
-
-
-def _sentence(here: Here, change: Change, *, dry_run: bool) -> str:
-    kept = f" The old one is kept at {here.workspace.shown(Path(change.backup))}." if change.backup else ""
-    was, put = ("would be", "would be put") if dry_run else ("was", "is")
-    beside = f"{put} beside it as {here.workspace.shown(Path(change.new or ''))}"
-    said = {
-        "replace": f"{was} replaced by the newer one; you had not edited it.{kept}",
-        "merge": f"newer text {was} put around your work.{kept}",
-        "beside": f"you edited it, so it stays; the newer one {beside}.{kept}",
-        "missing": "not there, and left so; `course start` would put it back.",
-        "current": "up to date.",
-    }
-    return f"{here.workspace.shown(Path(change.path))}: {said[change.action]}"
 
 
 def _lines(data: bytes) -> list[str]:

@@ -37,7 +37,14 @@ if TYPE_CHECKING:
 
 def curve_replies(made: Attempt) -> tuple[CurveReply, ...]:
     """The curves as ``--json`` prints them."""
-    return tuple(_reply(check, curve) for check, curve in _curves(made))
+    from course.figures.described import thinned
+
+    replies = []
+    for check, curve in _curves(made):
+        few = thinned(curve)
+        points = {name: tuple(getattr(few, name).tolist()) for name in ("t", "yours", "right")}
+        replies.append(filled(CurveReply, curve, check=check, **points))
+    return tuple(replies)
 
 
 def show_curve(console: Console, made: Attempt, *, focus: str = "", drawn: bool = True) -> None:
@@ -69,14 +76,6 @@ def _curves(made: Attempt, focus: str = "") -> Iterator[tuple[str, Curve]]:
         key=lambda check: order.index(check.task) if check.task in order else len(order),
     ):
         yield check.id, made.curves[check.id]
-
-
-def _reply(check: str, curve: Curve) -> CurveReply:
-    from course.figures.described import thinned
-
-    few = thinned(curve)
-    points = {name: tuple(getattr(few, name).tolist()) for name in ("t", "yours", "right")}
-    return filled(CurveReply, curve, check=check, **points)
 
 
 def check(

@@ -248,6 +248,5 @@ def _without_outputs(data: bytes) -> bytes:
     for cell in (cell for sheet in sheets for cell in sheet.get("cells", [])):
         cell.pop("attachments", None)
         if cell.get("cell_type") == "code":
-            cell["outputs"] = []
-            cell["execution_count"] = None
+            cell["outputs"], cell["execution_count"] = [], None
     return dumped(notebook)

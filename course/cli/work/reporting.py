@@ -9,13 +9,12 @@ from course.cli.frame import here
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
 from course.cli.frame.options import ExerciseName, option
-from course.cli.frame.replies import WrittenFile, filled
+from course.cli.frame.replies import filled
 from course.cli.home.advice import after_report
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import ReportReply, SectionReply
 from course.errors import UsageError
-from course.figures.described import Plot
 from course.scoring.failures import Report, Section
 
 
@@ -41,29 +40,20 @@ def report(
     report_source_file(console, here, work)
     with console.working(f"Running {work.name}"):
         made = report_of(chosen, here.catalog, work.submission)
-    folder = _folder(here, chosen.place, out)
-    console.heading(made.title, chosen.id)
-    files = (folder / f"{n}-{_slug(one.title)}.png" for n, one in enumerate(made.sections, 1))
-    sections = tuple(_shown(console, *both) for both in zip(made.sections, files, strict=True))
-    written = _write_bag(console, made, bag) if bag is not None else None
-    console.next(after_report(here, chosen))
-    return here.answer(
-        filled(ReportReply, made, course=here.course, exercise=chosen.id, sections=sections, bag=written)
-    )
-
-
-def _folder(here: Here, place: str, out: Path | None) -> Path:
-    folder = here.workspace.path(place, "report") if out is None else named(out)
+    folder = here.workspace.path(chosen.place, "report") if out is None else named(out)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         problem = f"The folder {folder} cannot be made ({error.strerror or error})."
         raise UsageError(problem, help="Name another one with --out.", code="not_writable") from error
-    return folder
-
-
-def _slug(title: str) -> str:
-    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40] or "section"
+    console.heading(made.title, chosen.id)
+    names = (re.sub(r"[^a-z0-9]+", "-", one.title.lower()).strip("-")[:40] for one in made.sections)
+    files = (folder / f"{number}-{name or 'section'}.png" for number, name in enumerate(names, 1))
+    sections = tuple(_shown(console, *both) for both in zip(made.sections, files, strict=True))
+    written = _write_bag(console, made, bag) if bag is not None else None
+    console.next(after_report(here, chosen))
+    named_so = {"course": here.course, "exercise": chosen.id}
+    return here.answer(filled(ReportReply, made, **named_so, sections=sections, bag=written))
 
 
 def _shown(console: Console, section: Section, path: Path) -> SectionReply:
@@ -78,12 +68,8 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
             console.line(item.strip(), indent=2)
     if section.rows:
         console.table_or_facts(section.columns, section.rows)
-    figure = _drawn(console, section.plot, path) if section.plot is not None else None
-    description = section.plot.description if section.plot else ""
-    return filled(SectionReply, section, figure=figure, description=description)
-
-
-def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
+    if (plot := section.plot) is None:
+        return filled(SectionReply, section, figure=None, description="")
     from course.figures.plots import draw, render
 
     with console.working("Drawing"):
@@ -93,7 +79,8 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
         console.line(("Figure: " + plot.description, "dim"))
     # An unchanged figure needs no copy of the old one.
     path.unlink(missing_ok=True)
-    return here.write_told(path, picture, why="report")
+    figure = here.write_told(path, picture, why="report")
+    return filled(SectionReply, section, figure=figure, description=plot.description)
 
 
 def _write_bag(console: Console, made: Report, bag: Path) -> str:

@@ -133,9 +133,8 @@ def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
         return [f"{which}: this warm-up is done." if verdict.all_pass else some]
     score = f"Score {format_points(verdict.score)}/{format_points(verdict.max_score)}"
     hidden = exercise.hidden_checks
-    later = ""
-    if hidden:
-        later = f"; {hidden} hidden {'check runs' if hidden == 1 else 'checks run'} when it is graded"
+    run = "check runs" if hidden == 1 else "checks run"
+    later = f"; {hidden} hidden {run} when it is graded" if hidden else ""
     if verdict.all_pass:
         everything = "The one public check passes" if total == 1 else f"All {total} public checks pass"
         return [f"{everything}{later}.", f"{score}."]
@@ -205,24 +204,21 @@ class _Page:
             self._label(check.status, check.message)
             self._details(check)
         elif self.brief and not self.verbose:
-            self._first_failure(checks)
+            # One check in detail, below a line for each other that does not pass.
+            passing = [check for check in checks if check.status == "pass"]
+            failing = sorted((c for c in checks if c.status != "pass"), key=lambda c: c.status == "skip")
+            if passing:
+                self._label("pass", counted(len(passing), "check"))
+            for check in failing[1:]:
+                why = f"  runs after {check.blocked_by} passes" if check.blocked_by else ""
+                aside = why if check.status == "skip" else f"  [{check.id}]"
+                self._label(check.status, self._title(check), aside)
+            for check in failing[:1]:
+                self.check(check)
         else:
             for check in checks:
                 self.check(check)
         self.console.gap()
-
-    def _first_failure(self, checks: Sequence[CheckResult]) -> None:
-        """One check in detail, below a line for each other that does not pass."""
-        passing = [check for check in checks if check.status == "pass"]
-        failing = sorted((c for c in checks if c.status != "pass"), key=lambda check: check.status == "skip")
-        if passing:
-            self._label("pass", counted(len(passing), "check"))
-        for check in failing[1:]:
-            why = f"  runs after {check.blocked_by} passes" if check.blocked_by else ""
-            aside = why if check.status == "skip" else f"  [{check.id}]"
-            self._label(check.status, self._title(check), aside)
-        for check in failing[:1]:
-            self.check(check)
 
     def unwritten(self, tasks: Tasks) -> None:
         """The functions that are still the stub's, with each advice once; those of the rarer are named."""
@@ -253,7 +249,7 @@ class _Page:
         self._label(check.status, self._title(check), aside)
         if check.status == "pass":
             if self.verbose:
-                self._printed(check)
+                self._lines("Your code printed:", check.stdout)
             return
         if check.blocked_by:
             self._text(f"Runs once {check.blocked_by} passes.")
@@ -287,23 +283,19 @@ class _Page:
     def _details(self, check: CheckResult) -> None:
         if check.help and check.help not in self._said:
             self._text(check.help)
-        for label, text in numbers_of(check):
+        # The name of a mistake tells its student nothing.
+        named = [("diagnosis", check.diagnosis)] if check.diagnosis and self.verbose else []
+        for label, text in (*numbers_of(check), *named):
             row = max(self.console.width, _USUAL) - _BESIDE  # a narrow window must not hide two numbers
             if self.brief and not self.verbose and len(text) > _SHORT * row:
                 self._shortened = True
             else:
                 self.console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
-        if check.diagnosis and self.verbose:  # the name of a mistake tells its student nothing
-            place = {"indent": _DETAIL_INDENT, "width": _LABEL_WIDTH}
-            self.console.item("diagnosis", check.diagnosis, style="dim", **place)
         self._said.add(check.help)
-        self._printed(check)
+        self._lines("Your code printed:", check.stdout)
         if self.verbose:
             self._lines("Traceback, your lines only:", check.traceback)
         self._kept_back |= bool(check.traceback) and not self.verbose
-
-    def _printed(self, check: CheckResult) -> None:
-        self._lines("Your code printed:", check.stdout)
 
     def _lines(self, heading: str, text: str | None) -> None:
         show_lines(self.console, heading, text or "", whole=self.verbose, indent=_DETAIL_INDENT)

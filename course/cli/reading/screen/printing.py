@@ -151,19 +151,16 @@ class ScreenPrinter(FancyPrinter):
         # A heading is not left alone at the foot of a screen, nor what stands for a closed answer on its own.
         after_head = index > 0 and isinstance(self._script.blocks[index - 1], b.Heading)
         with_above = after_head or shown is _CLOSED
+        # Whether it comes right after what an open prediction closes.
+        before = (one for one in self._script.questions if self._script.after(one) == index)
+        afresh = any(self._progress.prediction(one) is None for one in before)
         rows = []
         for number, line in enumerate(lines):
             blank = not any(segment.text.strip() for segment in line)
             first = number <= lead or number == len(lines) - 1  # nor is a single line of a paragraph
             joined = (number > 0 and (whole or first)) or with_above
-            fresh = number == 0 and self._begins_afresh(index)
-            rows.append(Row(index, blank, joined, fresh))
+            rows.append(Row(index, blank, joined, number == 0 and afresh))
         return BlockRows(tuple(tuple(line) for line in lines), tuple(rows))
-
-    def _begins_afresh(self, index: int) -> bool:
-        """Whether a block comes right after what an open prediction closes."""
-        before = (one for one in self._script.questions if self._script.after(one) == index)
-        return any(self._progress.prediction(one) is None for one in before)
 
     def _segment(self, text: str, style: Style | None) -> Segment:
         if style is not None and self._console.no_color:

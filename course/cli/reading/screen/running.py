@@ -222,8 +222,13 @@ class Practice:
 
     def of(self, name: str) -> Standing:
         """How far the student is."""
-        if name not in self._standings:
-            self._standings[name] = self._recorded(name)
+        if name in self._standings or self._workspace is None:
+            return self._standings.get(name, Standing())
+        exercise, done = self._catalog.exercise(name), False
+        with contextlib.suppress(CourseError):
+            done = history_of(self._workspace.store.events("check", name)).done is not None
+        file = f"{exercise.place}/{exercise.module}" if self._path(exercise).is_file() else ""
+        self._standings[name] = Standing(file=file, done=done)
         return self._standings[name]
 
     def start(self, name: str) -> None:
@@ -330,15 +335,6 @@ class Practice:
                 reply = {"error": {"message": f"`course {command} {name}` gave no answer.", "help": ""}}
         self._process = None
         return reply
-
-    def _recorded(self, name: str) -> Standing:
-        if self._workspace is None:
-            return Standing()
-        exercise, done = self._catalog.exercise(name), False
-        with contextlib.suppress(CourseError):
-            done = history_of(self._workspace.store.events("check", name)).done is not None
-        there = self._path(exercise).is_file()
-        return Standing(file=f"{exercise.place}/{exercise.module}" if there else "", done=done)
 
     def _path(self, exercise: Exercise) -> Path:
         assert self._workspace is not None

@@ -173,7 +173,13 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
     if rows:
-        selection.written.notes.append(_how_to_map(rows))
+        most = {exercise.id: number(exercise.max_points) for exercise in results.exercises()}
+        points = ", ".join(f"{name} {most[name]}" for name in selection.exercises)
+        selection.written.notes += [
+            _how_to_map(rows),
+            f"The scores are written as points of the exercise ({points}): give the grade item in Moodle the"
+            " same maximum grade.",
+        ]
     return selection.written
 
 
@@ -246,7 +252,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     as_given, rows = _read(options.worksheet)
     headings = in_english(as_given)
     mine = {selection.people[one.student].moodle_key: one for one in selection.each()}
-    locked, kept, filled = [], [], 0
+    locked, kept, filled, unscaled = [], [], 0, 0
     for row in rows:
         effective = mine.get(moodle_key(row[headings.index(_KEY)]) or "")
         if effective is None or effective.score is None:
@@ -264,6 +270,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
         for name, cell in ours.items():
             row[headings.index(name)] = cell
         filled += 1
+        unscaled += not most
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator="\r\n").writerows([as_given, *rows])
     write_bytes(path, text.getvalue().encode("utf-8"))
@@ -271,6 +278,13 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     written.paths.append(path)
     written.rows = filled
     written.notes.append(f"{counted(len(rows) - filled, 'row')} of the worksheet left unchanged.")
+    if unscaled:
+        name = selection.exercises[0]
+        points = {exercise.id: exercise.max_points for exercise in results.exercises()}[name]
+        written.notes.append(
+            f"The worksheet says no maximum grade for {counted(unscaled, 'row')}: the scores of {name} are"
+            f" written there as points of {number(points)}."
+        )
     if kept:
         written.kept = kept
         rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"

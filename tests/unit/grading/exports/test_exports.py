@@ -299,6 +299,11 @@ def test_moodle_finds_its_students_by_their_key(results, tmp_path):
     assert all(re.fullmatch(r"[0-9.]*", grade) for grade in grades.values())
 
 
+def test_moodles_grade_import_is_told_the_scale_of_its_points(results, tmp_path):
+    notes = export(results, "moodle", tmp_path, tmp_path / "grades.csv", OPTIONS).notes
+    assert [note for note in notes if "points of the exercise (doubling 10)" in note], notes
+
+
 def test_an_exercise_that_nobody_handed_in_has_no_column(results, tmp_path):
     everything = dataclasses.replace(OPTIONS, exercises=())
     for name in ("moodle", "canvas"):

@@ -404,8 +404,12 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: s
         student = one_line(item.student)
         more = ("--exercise", item.exercise, "--reason", "TEXT")
         given = command("grade", "override", out, student, item.exercise, "--score", 0, "--reason", "TEXT")
-        other = f"; {command('grade', 'assign', out, student, 'FILE', *more)} grades another file"
-        console.note(f"{given} gives a score by hand{other if item.exercise != 'quiz' else ''}.")
+        other = f"{command('grade', 'assign', out, student, 'FILE', *more)} grades another file"
+        if item.exercise == "quiz":
+            other = (
+                "--resume grades the zip of `course submit` once it is the only one in the student's folder"
+            )
+        console.note(f"{given} gives a score by hand; {other}.")
 
 
 class GradeLog(Envelope, tag="course.grade-log/1", frozen=True, kw_only=True):

@@ -458,13 +458,15 @@ def _within(content: bytes, shown: str, limit: int) -> bytes:
 def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | None]:
     """A student's quiz attempts, as in the JSON, and the file they came in; an empty list if none.
 
-    An archive that cannot be read gives none: the exercises in it report what is wrong with it.
+    Of several files the one counts that has all attempts of the others, and then its own. An archive that
+    cannot be read gives none: the exercises in it report what is wrong with it.
 
     Args:
         alone: no exercise is read that could.
 
     Raises:
-        UngradableError: several files hold different attempts, or a file that may hold some was not read.
+        UngradableError: each of several files has attempts that the others lack, or a file that may hold
+            some was not read.
     """
     found: list[tuple[Any, Path]] = []
     unread: RefusedError | None = None
@@ -484,12 +486,16 @@ def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | Non
                 unread = refused if alone or reader.spent else unread
     # A damaged record takes nothing from one that can be read.
     found = [one for one in found if not isinstance(one[0], str)] or found
-    if any(record != found[0][0] for record, _ in found):
-        message = "Several files hold quiz attempts."
-        raise UngradableError(message, help="Keep the one that counts.", code="ambiguous_files")
     if unread and not found:
         raise unread
-    return found[0] if found else ([], None)
+    if not found:
+        return [], None
+    most = max(found, key=lambda one: len(one[0]))
+    if any(record != most[0][: len(record)] for record, _ in found):
+        names = some([place.shown(path) for _, path in found], _SHOWN)
+        message = f"Several files hold different quiz attempts: {names}."
+        raise UngradableError(message, help="Keep the one that counts.", code="ambiguous_files")
+    return most
 
 
 #: How far one student's folder is searched: depth of folders, entries, files read, and files that killed the

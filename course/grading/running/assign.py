@@ -110,7 +110,7 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
     elif exercise == "quiz":
         raise UsageError(
             "A quiz is graded from its record, which no file is assigned for.",
-            help="Put the zip of `course submit` into the student's folder and grade with --resume, or give "
+            help="Leave one zip of `course submit` in the student's folder and grade with --resume, or give "
             "the score with `course grade override`.",
             code="needs_exercise",
         )

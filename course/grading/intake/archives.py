@@ -211,12 +211,13 @@ def _compressed(path: Path, kind: str, meter: downloads.Meter) -> list[tuple[str
 @dataclass(frozen=True)
 class _Held:
     """A zip whose members are all harmless: their names there, by those without the folders around all of
-    them; by these, what may be code; and the manifest of ``course submit``, if it has one. What cannot be
-    read is why."""
+    them; by these, what may be code; the manifest of ``course submit``, if it has one; and the names of work
+    in folders that count nowhere. What cannot be read is why."""
 
     names: dict[str, str]
     files: dict[str, bytes | RefusedError]
     manifest: dict[str, Any] | RefusedError
+    aside: tuple[str, ...] = ()
 
 
 #: Characters of what the library says of damage; it quotes names.
@@ -268,7 +269,7 @@ def _read(path: Path, wanted: Callable[[str, str], bool]) -> _Held:
         }
         info = members.get(MANIFEST)
         found = _tried(path, lambda: _read_manifest(path, _unpacked(path, archive, info))) if info else {}
-        return _Held(names, files, found)
+        return _Held(names, files, found, tuple(filter(downloads.lies_aside, archive.namelist())))
 
 
 def _listed(path: Path) -> int:
@@ -562,7 +563,10 @@ def _outlines(
             yield "", digest, (), (), 0, kind
         return
     if not files and not _is_record(path):
-        yield "", hashlib.sha256(content).hexdigest(), (), (), 0, f"{kind} without a file of code"
+        without = f"{kind} without a file of code"
+        if kind == "a zip archive" and (aside := _given(_held(path)).aside):
+            without = f"{kind} with code only where none is looked for: {some([*map(quoted, aside)], _SHOWN)}"
+        yield "", hashlib.sha256(content).hexdigest(), (), (), 0, without
     for name, found in files:
         what = downloads.kind_of(name, found)
         digest = hashlib.sha256(found).hexdigest()

@@ -40,6 +40,7 @@ from course.grading.intake.downloads import (
     is_meant,
     is_notebook,
     kind_of,
+    lies_aside,
     may_be_code,
     plain,
 )
@@ -559,7 +560,7 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
     candidates: list[Candidate] = []
     left = _CODE
     # What is most likely work comes first, should there be more than is read.
-    for name, path in sorted(_files(place), key=lambda item: not item[0].casefold().endswith(HANDED_IN)):
+    for name, path in sorted(_files(place), key=lambda item: _unlikely(item[0])):
         fatal = sum(not one.sha256 for one in candidates)
         if len(candidates) >= _READ or fatal >= _FATAL:
             break
@@ -571,15 +572,31 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
     return candidates[:_READ]
 
 
+def _unlikely(name: str) -> int:
+    return 2 if lies_aside(name) else not name.casefold().endswith(HANDED_IN)
+
+
 def _files(place: Place) -> list[tuple[str, Path]]:
     if place.files is not None:
         files = [(name, path) for name, path in place.files if not is_meant(name, MANIFEST)]
         return [(name, path) for name, path in files if path.is_file() and not path.is_symlink()]
-    return list(_below(place.root, "", 0, iter(range(_ENTRIES))))
+    aside: list[tuple[Path, str, int]] = []
+    found = list(_below(place.root, "", 0, iter(range(_ENTRIES)), aside))
+    left = iter(range(_ENTRIES))
+    for folder, above, depth in aside:  # last, and only for what a person may have written
+        there = _below(folder, above, depth, left, None)
+        found += [(name, path) for name, path in there if lies_aside(name)]
+    return found
 
 
-def _below(folder: Path, above: str, depth: int, left: Iterator[int]) -> Iterator[tuple[str, Path]]:
-    """Names and paths of the files in a folder, until as many entries were looked at as are left."""
+def _below(
+    folder: Path, above: str, depth: int, left: Iterator[int], aside: list[tuple[Path, str, int]] | None
+) -> Iterator[tuple[str, Path]]:
+    """Names and paths of the files in a folder, until as many entries were looked at as are left.
+
+    Args:
+        aside: takes the folders that count nowhere; None looks into them, too.
+    """
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError:
@@ -588,11 +605,21 @@ def _below(folder: Path, above: str, depth: int, left: Iterator[int]) -> Iterato
         if next(left, None) is None:
             return
         path = folder / entry.name
-        if is_clutter(entry.name) or entry.is_symlink():
+        if entry.is_symlink():
             continue
         if entry.is_dir(follow_symlinks=False):
-            if depth < _DEEP and not (path / "pyvenv.cfg").exists():
-                yield from _below(path, f"{above}{entry.name}/", depth + 1, left)
+            if depth >= _DEEP or (path / "pyvenv.cfg").exists():
+                continue
+            within = f"{above}{entry.name}/"
+            if aside is not None and not is_clutter(entry.name):
+                yield from _below(path, within, depth + 1, left, aside)
+            elif lies_aside(f"{within}any.py"):
+                if aside is None:
+                    yield from _below(path, within, depth + 1, left, None)
+                else:
+                    aside.append((path, within, depth + 1))
+        elif is_clutter(entry.name):
+            continue
         elif entry.is_file(follow_symlinks=False) and not is_meant(entry.name, MANIFEST):
             yield above + entry.name, path
 
@@ -629,6 +656,9 @@ def found_for(
     tasks = [task.id for task in exercise.task]
     stem = Path(exercise.module).stem.casefold()
     ranked: list[tuple[float, float, Candidate]] = []
+    candidates = list(candidates)
+    # What lies in a build folder may be an older copy of what lies outside.
+    outside = any(not lies_aside(one.name) and set(tasks) & set(one.written) for one in candidates)
     for one in candidates:
         mine = tuple(name for name in tasks if name in one.defines)
         written = tuple(name for name in mine if name in one.written)
@@ -636,7 +666,9 @@ def found_for(
         alike = alike if alike >= _ALIKE else 0.0
         if mine or alike or one in asked:
             # What cannot be read as code can be named, and not proposed.
-            worth, alike = (len(written), alike + 0.1 * bool(mine)) if one.kind in _READABLE else (0, 0.0)
+            worth, alike = len(written), alike + 0.1 * bool(mine)
+            if one.kind not in _READABLE or (outside and lies_aside(one.name)):
+                worth, alike = 0, 0.0
             ranked.append((worth, alike, msgspec.structs.replace(one, defines=mine, written=written)))
     ranked.sort(
         key=lambda item: (-item[0], -item[1], not item[2].name.casefold().endswith(HANDED_IN), item[2].name)

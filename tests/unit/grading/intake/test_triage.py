@@ -129,6 +129,11 @@ ASKED = {
     "of which one is nothing": (
         {"doubling.py": b"x = 1\n", "doubling (1).py": OTHER}, "ambiguous_files", "doubling (1).py"
     ),
+    "in a build folder": ({"build/doubling.py": SOURCE}, "no_file", "build/doubling.py"),
+    "in an editor's folder": ({".vscode/a/work.py": SOURCE, ".vscode/a.json": b"{}"}, "no_file",
+        ".vscode/a/work.py"),
+    "an older build": ({"hw.py": SOURCE, "dist/hw.py": OTHER}, "no_file", "hw.py"),
+    "a stub, and a build": ({"doubling.py": STUB, "build/a.py": SOURCE}, "ambiguous_files", "build/a.py"),
     "in file and zip": (
         {"doubling.py": SOURCE, "a.zip": zipped({"doubling.py": OTHER})}, "ambiguous_files", None
     ),
@@ -178,6 +183,10 @@ ODDLY = {
     "one function": ({"hw.py": b"def doublings(x, n):\n    return x\n"}, "hw.py", ""),
     "7z": ({"doubling.7z": b"7z\xbc\xaf\x27\x1c rest"}, "", "a 7z archive, which nothing here opens"),
     "rar": ({"work.rar": b"Rar!\x1a\x07\x00"}, "", "a rar archive, which nothing here opens"),
+    "a build in a zip": (
+        {"all.zip": zipped({"build/doubling.py": SOURCE})}, "",
+        "a zip archive with code only where none is looked for: 'build/doubling.py'",
+    ),
     "damaged": ({"all.tar.gz": b"\x1f\x8b and no more"}, "", "it cannot be read (it is damaged)"),
     "PDF": ({"doubling.pdf": b"%PDF-1.7"}, "", "a PDF document"),
     "Word": ({"doubling.docx": zipped({"word/document.xml": b""})}, "", "a document of an office program"),
@@ -282,6 +291,27 @@ def test_an_environment_of_any_name_does_not_count(tmp_path, doubling):
     ada, bob = read_class(tmp_path, [doubling], required=True)
     assert ada.submission is not None, ada.problem
     assert (bob.submission is not None, bob.notes) == (True, ())
+
+
+def test_copies_that_machines_make_are_not_listed_as_work(tmp_path, doubling):
+    made = (
+        "site-packages",
+        "node_modules",
+        ".ipynb_checkpoints",
+        "build/__pycache__",
+        ".git/hooks",
+        "m.egg-info",
+    )
+    lay(tmp_path, **{f"{folder}/doubling.py": SOURCE for folder in made}, **{"a.txt": b"x"})
+    assert [one.name for one in read(tmp_path, doubling).found.candidates] == ["a.txt"]
+
+
+def test_a_large_build_folder_hides_no_work_beside_it(tmp_path, doubling, monkeypatch):
+    monkeypatch.setattr(students, "_ENTRIES", 20)
+    lay(
+        tmp_path, **{f"build/m{n}.py": b"x = 1\n" for n in range(40)}, **{"mine/hw.py": SOURCE, "z.txt": b"x"}
+    )
+    assert [one.name for one in read(tmp_path, doubling).found.candidates if one.proposed] == ["mine/hw.py"]
 
 
 def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path, doubling):

@@ -31,7 +31,7 @@ import msgspec
 
 from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
-from course.grading.gradebook.records import SubmittedAt
+from course.grading.gradebook.records import ELSEWHERE, SubmittedAt
 from course.grading.intake.archives import RefusedError, reader
 from course.grading.intake.downloads import (
     Place,
@@ -202,16 +202,41 @@ def _meant(left: list[Candidate], every: Sequence[Exercise]) -> dict[str, list[C
 
 
 def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
-    """Other files with functions of the same exercise; they are always reported."""
+    """Other files with functions of the same exercise, and those that are written in no other; always
+    reported."""
     found = found_for(exercise, left, asked=())
     others = [one for one in found if one.defines and one.sha256 not in taken.contents]
-    return [f"Also there, and not graded: {described(others)}."] if others else []
+    if not others:
+        return []
+    notes = [f"Also there, and not graded: {described(others)}."]
+    source = taken.submission.files[exercise.module]
+    _, written = _outline(exercise, taken)
+    for one in others:
+        # What a line gives its name, as a lambda, counts as written.
+        only = [
+            name
+            for name in one.written
+            if name not in written and not re.search(rf"(?m)^\s*{name}\s*[:=]".encode(), source)
+        ]
+        if only:
+            return [*notes, f"{ELSEWHERE}{', '.join(only)} in {quoted(one.name)}."]
+    return notes
+
+
+def _outline(exercise: Exercise, taken: _FoundWork) -> tuple[Collection[str], Collection[str]]:
+    """The exercise's functions that the graded file defines, and those of them that are written."""
+    path, member = taken.used[0]
+    tasks = tuple(task.id for task in exercise.task)
+    outlines = reader.outlines(Path(path), (), tasks)
+    return next(
+        ((defines, written) for name, _, defines, written, *_ in outlines if name == member), ((), ())
+    )
 
 
 #: How notes begin, or end, that say which of a student's files was graded, and how it was found.
 _ABOUT_A_FILE = re.compile(
-    r"(Graded from|Also there, and not graded:|These are the same file:|The same file is in|The folder "
-    r"|Everything (in|lies in) |It was written with ).*"
+    rf"(Graded from|Also there, and not graded:|{ELSEWHERE}|These are the same file:|The same file is in"
+    r"|The folder |Everything (in|lies in) |It was written with ).*"
     r"|.*( was taken for | was read as one\.|taken for folders\.).*",
     re.DOTALL,
 )
@@ -225,15 +250,13 @@ def about_a_file(note: str) -> bool:
 def _stub_beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> RefusedError | None:
     """Where nothing is written in the file with the right name, and something is in another, the question."""
     others = [one for one in found_for(exercise, left, asked=()) if one.written]
-    path, member = taken.used[0]
     if not others:
         return None
-    tasks = tuple(task.id for task in exercise.task)
-    for name, _, defines, written, *_ in reader.outlines(Path(path), (), tasks):
-        if name == member and defines and not written:
-            message = f"Nothing is written in the file for {exercise.id}. There is {described(others)}."
-            return RefusedError("ambiguous_files", message, "Keep the one that counts.")
-    return None
+    defines, written = _outline(exercise, taken)
+    if written or not defines:
+        return None
+    message = f"Nothing is written in the file for {exercise.id}. There is {described(others)}."
+    return RefusedError("ambiguous_files", message, "Keep the one that counts.")
 
 
 def _without(

@@ -149,7 +149,8 @@ def _lying(results: Results, student: str, file: str) -> tuple[Path, str] | None
     if place is None:
         return None
     if place.files is None:
-        return _cut(place.root / file)
+        # As lists call it: a folder around everything was passed over.
+        return _cut(place.root / file) or _cut(place.unwrapped(()).root / file)
     above, _, member = file.partition("/")
     return next(((path, member) for name, path in place.files if name == above), None)
 

@@ -1,6 +1,7 @@
 """`course grade assign|log|salvage`, and what `--dry-run` and `--resume` say before a score changes."""
 
 import dataclasses
+import html
 import io
 import json
 import shutil
@@ -151,6 +152,33 @@ def test_who_is_called_as_two_are_is_asked_back_and_nobody_s_log_is_refused(cour
     assert "ada, bob" in refused.json["error"]["help"]
     for about in (("nobody",), ("ada", "nothing")):
         assert course("grade", "log", "named", *about, "--json").code == 5, about
+
+
+def test_a_file_with_functions_that_the_graded_one_lacks_is_listed_until_one_of_them_is_assigned(
+    course, here, monkeypatch
+):
+    half = verdict(check("shown", Status.FAIL))
+    monkeypatch.setattr(batch, "grade_all", lambda entries, *_, **__: [Graded(one, half) for one in entries])
+    ada = here / "class" / "ada"
+    (ada / "doubling.py").write_text("def double(x):\n    return 2 * x\n")
+    (ada / "new").mkdir()
+    (ada / "new" / "doubling.py").write_text(SOURCE)
+    (here / "class" / "bob" / "doubling.py").write_text(SOURCE)
+    named = "ada doubling: doublings in 'new/doubling.py'"
+    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
+    assert f"1 graded without functions that another file has:\n  {named}\n" in ran.out
+    assert "`course grade assign new STUDENT FILE --exercise ID --reason TEXT` grades that" in ran.out
+    again = ("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--resume", "--json")
+    assert json.loads(course(*again).out.splitlines()[-1])["elsewhere"] == [named]
+    assert course("grade", "rerun", "new", "--all").code == 0
+    assert named in course("grade", "assign", "new").out
+    assert course("grade", "assign", "new", "--json").json["elsewhere"] == [named]
+    assert "Doubling (doublings in 'new/doubling.py')" in html.unescape(
+        (here / "new/report.html").read_text()
+    )
+    settled = ("grade", "assign", "new", "ada", "doubling.py", "--exercise", "doubling", "--reason", "asked")
+    assert course(*settled).code == 0
+    assert course("grade", "assign", "new", "--json").json["elsewhere"] == []
 
 
 def test_what_was_said_of_a_file_stays_when_it_is_graded_again(course, here):

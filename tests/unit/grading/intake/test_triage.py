@@ -11,6 +11,7 @@ import tarfile
 import pytest
 
 from course.errors import NotFoundError, UngradableError
+from course.grading.gradebook.records import ELSEWHERE
 from course.grading.intake import students
 from course.grading.intake.downloads import DEEP
 from course.grading.intake.students import Candidate, found_for
@@ -106,6 +107,29 @@ def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(tmp_path, do
     lay(tmp_path, **{"all.zip": many})
     problem = read(tmp_path, doubling).problem
     assert "more than 5 MB" in problem.message
+
+
+@pytest.mark.parametrize(
+    ("graded", "other", "told"),
+    [
+        (b"def double(x):\n    return 2 * x\n", SOURCE, "doublings"),
+        (HALF, SOURCE, "doublings"),
+        (SOURCE, HALF, ""),
+        (b"def double(x):\n    return 2 * x\ndoublings = lambda x, n: x\n", SOURCE, ""),
+        (b"x = 1\n", SOURCE, "double, doublings"),
+    ],
+)
+def test_functions_that_only_another_file_has_are_named(tmp_path, doubling, graded, other, told):
+    lay(tmp_path, **{"doubling.py": graded, "final.py": other})
+    said = [note for note in read(tmp_path, doubling).notes if note.startswith(ELSEWHERE)]
+    assert said == ([f"{ELSEWHERE}{told} in 'final.py'."] if told else [])
+
+
+def test_a_file_in_a_folder_around_everything_is_assigned_by_the_name_that_is_listed(tmp_path, catalog):
+    lay(tmp_path / "class", **{"hw/doubling.py": HALF, "hw/new/a.py": SOURCE, "hw/b.txt": b"x"})
+    graded(tmp_path, catalog)
+    with open_results(tmp_path / "out") as results:
+        assert named(results, "ada", "new/a.py", "doubling").path.parts[-4:] == ("ada", "hw", "new", "a.py")
 
 
 #: What is asked about -> the code, and the one match there is.

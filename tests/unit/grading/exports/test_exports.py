@@ -142,6 +142,17 @@ def test_a_part_never_takes_the_place_of_what_is_about_all(results, tmp_path, na
     assert export(results, name, tmp_path, tmp_path / usual, OPTIONS).paths[0] == tmp_path / usual
 
 
+@pytest.mark.parametrize(
+    ("name", "file"), [("csv", "results.jsonl"), ("junit", "grades.csv"), ("csv", "students.csv")]
+)
+def test_no_export_takes_the_place_of_another_format_in_the_runs_folder(results, tmp_path, name, file):
+    (tmp_path / file).write_text("the run's own")
+    with pytest.raises(UsageError, match="Nothing was written") as caught:
+        export(results, name, tmp_path, tmp_path / "x" / ".." / file, ExportOptions(zeros=True))
+    assert caught.value.code == "out_exists"
+    assert (tmp_path / file).read_text() == "the run's own"
+
+
 def test_no_export_is_written_over_a_gradebook(results, tmp_path):
     path = tmp_path / "gradebook.sqlite"
     with make_book(tmp_path, {"ada": RIGHT}):

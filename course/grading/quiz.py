@@ -17,6 +17,7 @@ from typing import Annotated
 import msgspec
 
 from course.errors import ContentError, UngradableError
+from course.printable import one_line
 from course.progress.quiz import MAX_RECORDS
 from course.quizzing.bank import MAX_SEED, Bank, MarkedQuestion, Result, mark, needed
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, not_graded
@@ -70,9 +71,13 @@ def score_record(bank: Bank, record: object) -> QuizScore | None:
     Raises:
         UngradableError: ``quiz_record_inconsistent``; the message says which attempt and what is wrong.
     """
-    # Words in place of a record are the reason why there is none.
-    fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)
-    if fault is not None:
+    if isinstance(record, str):  # the reason why there is none
+        why = one_line(record, 400)
+        advice = (
+            "Leave one zip of `course submit` in the student's folder, unchanged, and grade with --resume."
+        )
+        raise UngradableError(f"The quiz cannot be scored. {why}.", help=advice, code=CODE)
+    if (fault := _fault(record)) is not None:
         raise _inconsistent(f"The quiz record is malformed ({fault}).")
     attempts: tuple[_Record, ...] = msgspec.convert(record, _Records)
     if not attempts:

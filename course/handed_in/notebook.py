@@ -14,7 +14,7 @@ from __future__ import annotations
 import ast
 import re
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -180,6 +180,12 @@ def _text(cell: _Cell) -> str:
     return source if isinstance(source, str) else "".join(source)
 
 
+def _not_python(cells: list[CodeCell], functions: Collection[str]) -> CodeCell | None:
+    """The first cell with one of the functions that a magic such as ``%%writefile`` takes out whole."""
+    named = re.compile(rf"(?m)^\s*def\s+({'|'.join(map(re.escape, functions))})\b")
+    return next((cell for cell in cells if not cell.text and cell.dropped and named.search(cell.raw)), None)
+
+
 # -- what IPython adds ------------------------------------------------------------------------------------
 
 
@@ -302,6 +308,15 @@ def source_of(
     chosen = [cell for cell in cells if _counts(cell, exercise.id, functions)]
     if not chosen:
         listed = ", ".join(task.id for task in exercise.task)
+        if held := _not_python(cells, functions):
+            line = quoted(held.dropped[0][1].strip())
+            message = (
+                f"{name} has its code in cell {held.number}, which begins with {line}: it is no Python cell."
+            )
+            advice = (
+                "Delete that line, so that the cell defines the functions, and hand the notebook in again."
+            )
+            raise UngradableError(message, help=advice, code="no_declared_functions")
         if not any(cell.text.strip() for cell in cells):
             advice = "Was it saved after you wrote it? `course notebook build` makes a new one."
             raise UngradableError(f"{name} has no code in it.", help=advice, code="no_declared_functions")

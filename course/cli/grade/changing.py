@@ -13,7 +13,7 @@ from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids
 from course.cli.frame.replies import Envelope, filled
 from course.cli.grade import options as opt
-from course.cli.grade.running import checks_gave, show_unjudged
+from course.cli.grade.running import checks_gave, show_elsewhere, show_unjudged
 from course.errors import UsageError
 from course.grading.exports.grades import grade_line, utc
 from course.grading.gradebook.records import Decision, Run, SubmittedAt
@@ -292,6 +292,7 @@ class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=Tr
     assigned: tuple[AssignedOne, ...]
     unsettled: tuple[UnsettledOne, ...]
     unjudged: tuple[str, ...] = ()
+    elsewhere: tuple[str, ...] = ()
 
 
 def assign(
@@ -321,10 +322,16 @@ def assign(
     console = current()
     done: list[Assigned] = []
     waiting = 0
+    elsewhere: tuple[str, ...] = ()
     if student is None and not accept_names:
         with open_results(out) as results:
             left = assigning.unsettled(results)
             waiting = len({item.student for item in results.all() if item.waiting})
+            elsewhere = tuple(
+                f"{item.student} {item.exercise}: {item.elsewhere}"
+                for item in results.all()
+                if item.elsewhere
+            )
     else:
         level, at_least = opt.levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "a trial" if dry_run else "")
@@ -349,6 +356,7 @@ def assign(
         _show_assigned(console, done, dry_run=dry_run)
         show_unjudged(console, broke)
         _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
+        show_elsewhere(console, elsewhere, out)
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
     unsettled = []
@@ -357,7 +365,13 @@ def assign(
         unsettled.append(filled(UnsettledOne, item, reason=item.found.reason, files=files))
     ones = tuple(map(_assigned_one, done))
     return console.answer(
-        GradeAssign(dry_run=dry_run, assigned=ones, unsettled=tuple(unsettled), unjudged=broke)
+        GradeAssign(
+            dry_run=dry_run,
+            assigned=ones,
+            unsettled=tuple(unsettled),
+            unjudged=broke,
+            elsewhere=elsewhere,
+        )
     )
 
 
@@ -373,6 +387,8 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
     for item in done:
         one, after = _assigned_one(item), item.after
         scored = f"{opt.points(after.score)} of {format_points(after.max_score)}"
+        if after.override is not None:
+            scored += f" by hand ({checks_gave(after)})"
         words = f"{one.state_before} -> {one.state_after}, {scored}; from {quoted(one.file)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:
@@ -404,8 +420,12 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: s
         student = one_line(item.student)
         more = ("--exercise", item.exercise, "--reason", "TEXT")
         given = command("grade", "override", out, student, item.exercise, "--score", 0, "--reason", "TEXT")
-        other = f"; {command('grade', 'assign', out, student, 'FILE', *more)} grades another file"
-        console.note(f"{given} gives a score by hand{other if item.exercise != 'quiz' else ''}.")
+        other = f"{command('grade', 'assign', out, student, 'FILE', *more)} grades another file"
+        if item.exercise == "quiz":
+            other = (
+                "--resume grades the zip of `course submit` once it is the only one in the student's folder"
+            )
+        console.note(f"{given} gives a score by hand; {other}.")
 
 
 class GradeLog(Envelope, tag="course.grade-log/1", frozen=True, kw_only=True):

@@ -76,7 +76,9 @@ def export(
     overwrite: Annotated[
         bool,
         option(
-            "--overwrite", "Replace what is in the file already: Moodle's grades and feedback, Canvas' EX."
+            "--overwrite",
+            "Replace what is in the file already: Moodle's grades and feedback; Canvas' EX, and its scores"
+            " where --missing zero writes 0.",
         ),
     ] = False,
     exercise: Exercises = None,

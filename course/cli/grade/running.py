@@ -55,6 +55,7 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
     edited: tuple[str, ...] = ()
     would_change: tuple[Change, ...] = ()
     unsettled: int = 0
+    elsewhere: tuple[str, ...] = ()
     moved: tuple[ScoreChange, ...] = ()
     dropped: tuple[str, ...] = ()
 
@@ -200,6 +201,7 @@ class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True
     graders: str = ""
     unjudged: tuple[str, ...] = ()
     rescaled: tuple[str, ...] = ()
+    gone: dict[str, int]
 
 
 def rerun(
@@ -245,8 +247,10 @@ def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -
     console.line((f"{done.regraded - done.faults} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
         console.note(f"Graded by the same graders already: {done.up_to_date}; --all grades them again.")
-    if done.kept:
-        console.note(f"Without a submission in the gradebook, and unchanged: {done.kept}.")
+    if without := done.kept - sum(done.gone.values()):
+        console.note(f"Without a submission in the gradebook, and unchanged: {without}.")
+    for name, count in done.gone.items():
+        console.note(f"These graders do not have the exercise {name}; unchanged: {count}.")
     show_faults(console, done, out)
     show_unjudged(console, done.unjudged)
     for told in done.rescaled:
@@ -350,6 +354,7 @@ def _show_summary(
     if summary.unsettled:
         assign = command("grade", "assign", out)
         console.note(f"{assign} lists the files of those that could not be graded, and how to settle each.")
+    show_elsewhere(console, summary.elsewhere, out)
     _show_people(console, summary)
     opt.show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
     show_unjudged(console, summary.unjudged)
@@ -379,6 +384,18 @@ def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = "") 
         console.item(whose, f"{row.code}: {one_line(row.message)}")
     if len(told) > _MOST_TROUBLED:
         console.line(f"and {len(told) - _MOST_TROUBLED} more{where}.", indent=2)
+
+
+def show_elsewhere(console: Console, listed: Sequence[str], out: Path) -> None:
+    """Graded submissions without functions that lie in another file of the student's."""
+    if listed:
+        console.line((f"{len(listed)} graded without functions that another file has:", "bold"))
+        for entry in listed[:_MOST_TROUBLED]:
+            console.line(one_line(entry), indent=2)
+        if len(listed) > _MOST_TROUBLED:
+            console.line(f"and {len(listed) - _MOST_TROUBLED} more; --json lists them all.", indent=2)
+        given = command("grade", "assign", out, "STUDENT", "FILE", "--exercise", "ID", "--reason", "TEXT")
+        console.note(f"{given} grades that file, or confirms the one that was graded.")
 
 
 def show_faults(console: Console, done: Regraded, out: Path) -> None:

@@ -85,14 +85,28 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
     headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *(one.heading for one in columns)]
     rows = [["    Points Possible", "", "", "", "", *map(number, possible)]]
     scales = {name: points / most[name] for name, points in zip(selection.exercises, possible, strict=True)}
+    absent = {(one.student, one.exercise) for one in results.all() if one.missing}
     for student, scores in _table(selection, scales).items():
         person = selection.people[student]
-        _keep_theirs(selection, student, columns, scores, overwrite=options.overwrite)
+        for at, (name, column) in enumerate(zip(selection.exercises, columns, strict=True)):
+            theirs, ours = column.cells.get(person.canvas_id, ""), scores[at]
+            if not ours and not is_safe(theirs):
+                notes.append(
+                    f"Canvas' own {one_line(theirs)!r} for {one_line(student)} {name} begins like a formula"
+                    " and is left out: the import takes it away there."
+                )
+                continue
+            weaker = theirs.upper() == "EX" or ((student, name) in absent and is_safe(theirs))
+            if not ours or (theirs and weaker and not options.overwrite):
+                scores[at] = theirs
+                if ours and not _same(theirs, ours):
+                    selection.written.kept.append(f"{student} {name} ({theirs})")
         login = person.login if person.canvas_id and is_safe(person.login) else ""  # as Canvas wrote it
         ids = person.canvas_id, person.sis_user_id, login
         rows.append([person.name or student, *ids, person.section, *scores])
     if selection.written.kept:
-        notes.append(f"Who is excused in Canvas {_kept(selection.written)}")
+        who = "Who is excused in Canvas, or has a score there and handed in nothing here,"
+        notes.append(f"{who} {_kept(selection.written)}")
     # Ruby's CSV reader, which Canvas uses, fails on a quote after a byte order mark.
     write_bytes(path, csv_bytes(headings, rows, mark=False))
     selection.written.paths.append(path)
@@ -134,25 +148,6 @@ def _check_assignments(selection: Selection, options: ExportOptions) -> None:
             )
 
 
-def _keep_theirs(
-    selection: Selection, student: str, columns: list[Column], scores: list[str], *, overwrite: bool
-) -> None:
-    """Write back what Canvas has where we have no score, and where it excuses the student."""
-    for at, column in enumerate(columns):
-        theirs = column.cells.get(selection.people[student].canvas_id, "")
-        if not is_safe(theirs) and not scores[at]:
-            selection.written.notes.append(
-                f"Canvas' own {one_line(theirs)!r} for {one_line(student)} {selection.exercises[at]} begins"
-                " like a formula and is left out: the import takes it away there."
-            )
-            theirs = ""
-        excused = theirs.upper() == "EX" and not overwrite
-        if excused and scores[at]:
-            selection.written.kept.append(f"{student} {selection.exercises[at]} (EX)")
-        if excused or not scores[at]:
-            scores[at] = theirs
-
-
 def _kept(written: Written) -> str:
     listed = some([one_line(one) for one in written.kept], SHOWN)
     return f"stays so: {listed}. --overwrite writes ours in their place."
@@ -173,7 +168,13 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
     if rows:
-        selection.written.notes.append(_how_to_map(rows))
+        most = {exercise.id: number(exercise.max_points) for exercise in results.exercises()}
+        points = ", ".join(f"{name} {most[name]}" for name in selection.exercises)
+        selection.written.notes += [
+            _how_to_map(rows),
+            f"The scores are written as points of the exercise ({points}): give the grade item in Moodle the"
+            " same maximum grade.",
+        ]
     return selection.written
 
 
@@ -246,7 +247,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     as_given, rows = _read(options.worksheet)
     headings = in_english(as_given)
     mine = {selection.people[one.student].moodle_key: one for one in selection.each()}
-    locked, kept, filled = [], [], 0
+    locked, kept, filled, unscaled = [], [], 0, 0
     for row in rows:
         effective = mine.get(moodle_key(row[headings.index(_KEY)]) or "")
         if effective is None or effective.score is None:
@@ -264,6 +265,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
         for name, cell in ours.items():
             row[headings.index(name)] = cell
         filled += 1
+        unscaled += not most
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator="\r\n").writerows([as_given, *rows])
     write_bytes(path, text.getvalue().encode("utf-8"))
@@ -271,6 +273,13 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     written.paths.append(path)
     written.rows = filled
     written.notes.append(f"{counted(len(rows) - filled, 'row')} of the worksheet left unchanged.")
+    if unscaled:
+        name = selection.exercises[0]
+        points = {exercise.id: exercise.max_points for exercise in results.exercises()}[name]
+        written.notes.append(
+            f"The worksheet says no maximum grade for {counted(unscaled, 'row')}: the scores of {name} are"
+            f" written there as points of {number(points)}."
+        )
     if kept:
         written.kept = kept
         rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"

@@ -8,6 +8,9 @@ import msgspec
 
 from course.scoring.verdict import Verdict
 
+#: How the note of a verdict begins that says which functions are only in a file that was not graded.
+ELSEWHERE = "Written in another file only, and not graded: "
+
 
 @dataclass(frozen=True, order=True)
 class Key:

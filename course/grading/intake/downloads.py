@@ -426,6 +426,11 @@ _CLUTTER = re.compile(
     r"|\.(?!\.?$|py$|ipynb$).+|~\$.*|.*\.egg-info|.*\.pyc",
     re.IGNORECASE,
 )
+#: Of these, what holds nothing that a person wrote, or only copies.
+_MACHINES = re.compile(
+    r"__MACOSX|__pycache__|node_modules|site-packages|\.git|\.svn|\.course|\.ipynb_checkpoints|.*\.egg-info",
+    re.IGNORECASE,
+)
 #: A file with this name lies at the top of every virtual environment, whatever that is called.
 _ENVIRONMENT = "pyvenv.cfg"
 
@@ -456,6 +461,18 @@ _CODE = ("", ".py", ".pyw", ".txt", ".ipynb", ".json", ".bak", ".old", ".orig", 
 def is_clutter(name: str) -> bool:
     """Whether a file or folder of this name is no student's work."""
     return _CLUTTER.fullmatch(name) is not None
+
+
+def lies_aside(name: str) -> bool:
+    """Whether a path leads to what a student may have written and put where nothing is graded, such as
+    ``build`` or ``.vscode``."""
+    *folders, file = name.split("/")
+    return (
+        file.casefold().endswith(HANDED_IN)
+        and not is_clutter(file)
+        and any(map(is_clutter, folders))
+        and not any(map(_MACHINES.fullmatch, folders))
+    )
 
 
 def clutter(names: Iterable[str]) -> Callable[[str], bool]:

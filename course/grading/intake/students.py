@@ -31,7 +31,7 @@ import msgspec
 
 from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
-from course.grading.gradebook.records import SubmittedAt
+from course.grading.gradebook.records import ELSEWHERE, SubmittedAt
 from course.grading.intake.archives import RefusedError, reader
 from course.grading.intake.downloads import (
     Place,
@@ -40,6 +40,7 @@ from course.grading.intake.downloads import (
     is_meant,
     is_notebook,
     kind_of,
+    lies_aside,
     may_be_code,
     plain,
 )
@@ -201,16 +202,41 @@ def _meant(left: list[Candidate], every: Sequence[Exercise]) -> dict[str, list[C
 
 
 def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
-    """Other files with functions of the same exercise; they are always reported."""
+    """Other files with functions of the same exercise, and those that are written in no other; always
+    reported."""
     found = found_for(exercise, left, asked=())
     others = [one for one in found if one.defines and one.sha256 not in taken.contents]
-    return [f"Also there, and not graded: {described(others)}."] if others else []
+    if not others:
+        return []
+    notes = [f"Also there, and not graded: {described(others)}."]
+    source = taken.submission.files[exercise.module]
+    _, written = _outline(exercise, taken)
+    for one in others:
+        # What a line gives its name, as a lambda, counts as written.
+        only = [
+            name
+            for name in one.written
+            if name not in written and not re.search(rf"(?m)^\s*{name}\s*[:=]".encode(), source)
+        ]
+        if only:
+            return [*notes, f"{ELSEWHERE}{', '.join(only)} in {quoted(one.name)}."]
+    return notes
+
+
+def _outline(exercise: Exercise, taken: _FoundWork) -> tuple[Collection[str], Collection[str]]:
+    """The exercise's functions that the graded file defines, and those of them that are written."""
+    path, member = taken.used[0]
+    tasks = tuple(task.id for task in exercise.task)
+    outlines = reader.outlines(Path(path), (), tasks)
+    return next(
+        ((defines, written) for name, _, defines, written, *_ in outlines if name == member), ((), ())
+    )
 
 
 #: How notes begin, or end, that say which of a student's files was graded, and how it was found.
 _ABOUT_A_FILE = re.compile(
-    r"(Graded from|Also there, and not graded:|These are the same file:|The same file is in|The folder "
-    r"|Everything (in|lies in) |It was written with ).*"
+    rf"(Graded from|Also there, and not graded:|{ELSEWHERE}|These are the same file:|The same file is in"
+    r"|The folder |Everything (in|lies in) |It was written with ).*"
     r"|.*( was taken for | was read as one\.|taken for folders\.).*",
     re.DOTALL,
 )
@@ -224,15 +250,13 @@ def about_a_file(note: str) -> bool:
 def _stub_beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> RefusedError | None:
     """Where nothing is written in the file with the right name, and something is in another, the question."""
     others = [one for one in found_for(exercise, left, asked=()) if one.written]
-    path, member = taken.used[0]
     if not others:
         return None
-    tasks = tuple(task.id for task in exercise.task)
-    for name, _, defines, written, *_ in reader.outlines(Path(path), (), tasks):
-        if name == member and defines and not written:
-            message = f"Nothing is written in the file for {exercise.id}. There is {described(others)}."
-            return RefusedError("ambiguous_files", message, "Keep the one that counts.")
-    return None
+    defines, written = _outline(exercise, taken)
+    if written or not defines:
+        return None
+    message = f"Nothing is written in the file for {exercise.id}. There is {described(others)}."
+    return RefusedError("ambiguous_files", message, "Keep the one that counts.")
 
 
 def _without(
@@ -458,13 +482,15 @@ def _within(content: bytes, shown: str, limit: int) -> bytes:
 def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | None]:
     """A student's quiz attempts, as in the JSON, and the file they came in; an empty list if none.
 
-    An archive that cannot be read gives none: the exercises in it report what is wrong with it.
+    Of several files the one counts that has all attempts of the others, and then its own. An archive that
+    cannot be read gives none: the exercises in it report what is wrong with it.
 
     Args:
         alone: no exercise is read that could.
 
     Raises:
-        UngradableError: several files hold different attempts, or a file that may hold some was not read.
+        UngradableError: each of several files has attempts that the others lack, or a file that may hold
+            some was not read.
     """
     found: list[tuple[Any, Path]] = []
     unread: RefusedError | None = None
@@ -484,12 +510,16 @@ def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | Non
                 unread = refused if alone or reader.spent else unread
     # A damaged record takes nothing from one that can be read.
     found = [one for one in found if not isinstance(one[0], str)] or found
-    if any(record != found[0][0] for record, _ in found):
-        message = "Several files hold quiz attempts."
-        raise UngradableError(message, help="Keep the one that counts.", code="ambiguous_files")
     if unread and not found:
         raise unread
-    return found[0] if found else ([], None)
+    if not found:
+        return [], None
+    most = max(found, key=lambda one: len(one[0]))
+    if any(record != most[0][: len(record)] for record, _ in found):
+        names = some([place.shown(path) for _, path in found], _SHOWN)
+        message = f"Several files hold different quiz attempts: {names}."
+        raise UngradableError(message, help="Keep the one that counts.", code="ambiguous_files")
+    return most
 
 
 #: How far one student's folder is searched: depth of folders, entries, files read, and files that killed the
@@ -515,6 +545,7 @@ class Candidate(msgspec.Struct, frozen=True):
         sha256: digest of its content.
         defines: names of the functions in it; only an exercise's tasks, where it is listed for an exercise.
         written: those of them that do more than a stub's.
+        code: digest of what it defines and assigns; empty if nothing is known of it.
         kind: what it is, or why it cannot be read; empty for code and notebooks.
         proposed: it is the only match.
     """
@@ -527,6 +558,7 @@ class Candidate(msgspec.Struct, frozen=True):
     proposed: bool = False
     kind: str = ""
     written: tuple[str, ...] = ()
+    code: str = ""
 
 
 class Found(msgspec.Struct, frozen=True):
@@ -553,7 +585,7 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
     candidates: list[Candidate] = []
     left = _CODE
     # What is most likely work comes first, should there be more than is read.
-    for name, path in sorted(_files(place), key=lambda item: not item[0].casefold().endswith(HANDED_IN)):
+    for name, path in sorted(_files(place), key=lambda item: _unlikely(item[0])):
         fatal = sum(not one.sha256 for one in candidates)
         if len(candidates) >= _READ or fatal >= _FATAL:
             break
@@ -565,15 +597,31 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
     return candidates[:_READ]
 
 
+def _unlikely(name: str) -> int:
+    return 2 if lies_aside(name) else not name.casefold().endswith(HANDED_IN)
+
+
 def _files(place: Place) -> list[tuple[str, Path]]:
     if place.files is not None:
         files = [(name, path) for name, path in place.files if not is_meant(name, MANIFEST)]
         return [(name, path) for name, path in files if path.is_file() and not path.is_symlink()]
-    return list(_below(place.root, "", 0, iter(range(_ENTRIES))))
+    aside: list[tuple[Path, str, int]] = []
+    found = list(_below(place.root, "", 0, iter(range(_ENTRIES)), aside))
+    left = iter(range(_ENTRIES))
+    for folder, above, depth in aside:  # last, and only for what a person may have written
+        there = _below(folder, above, depth, left, None)
+        found += [(name, path) for name, path in there if lies_aside(name)]
+    return found
 
 
-def _below(folder: Path, above: str, depth: int, left: Iterator[int]) -> Iterator[tuple[str, Path]]:
-    """Names and paths of the files in a folder, until as many entries were looked at as are left."""
+def _below(
+    folder: Path, above: str, depth: int, left: Iterator[int], aside: list[tuple[Path, str, int]] | None
+) -> Iterator[tuple[str, Path]]:
+    """Names and paths of the files in a folder, until as many entries were looked at as are left.
+
+    Args:
+        aside: takes the folders that count nowhere; None looks into them, too.
+    """
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError:
@@ -582,11 +630,21 @@ def _below(folder: Path, above: str, depth: int, left: Iterator[int]) -> Iterato
         if next(left, None) is None:
             return
         path = folder / entry.name
-        if is_clutter(entry.name) or entry.is_symlink():
+        if entry.is_symlink():
             continue
         if entry.is_dir(follow_symlinks=False):
-            if depth < _DEEP and not (path / "pyvenv.cfg").exists():
-                yield from _below(path, f"{above}{entry.name}/", depth + 1, left)
+            if depth >= _DEEP or (path / "pyvenv.cfg").exists():
+                continue
+            within = f"{above}{entry.name}/"
+            if aside is not None and not is_clutter(entry.name):
+                yield from _below(path, within, depth + 1, left, aside)
+            elif lies_aside(f"{within}any.py"):
+                if aside is None:
+                    yield from _below(path, within, depth + 1, left, None)
+                else:
+                    aside.append((path, within, depth + 1))
+        elif is_clutter(entry.name):
+            continue
         elif entry.is_file(follow_symlinks=False) and not is_meant(entry.name, MANIFEST):
             yield above + entry.name, path
 
@@ -603,10 +661,10 @@ def _outlined(
         why = refused.problem.message.removeprefix(f"{quoted(path.name)}: ").rstrip(".")
         return [Candidate(shown, os.fsencode(path), sha256="" if killed else shown, kind=why)], 0
     candidates = []
-    for member, sha256, defines, written, _, kind in outlines:
+    for member, sha256, defines, written, code, _, kind in outlines:
         inside = f"{shown}/{one_line(member)}" if member else shown
         about = (inside, os.fsencode(path), member, sha256, defines)
-        candidates.append(Candidate(*about, kind=kind, written=written))
+        candidates.append(Candidate(*about, kind=kind, written=written, code=code))
     return candidates, sum(parsed for *_, parsed, _ in outlines)
 
 
@@ -623,6 +681,9 @@ def found_for(
     tasks = [task.id for task in exercise.task]
     stem = Path(exercise.module).stem.casefold()
     ranked: list[tuple[float, float, Candidate]] = []
+    candidates = list(candidates)
+    # What lies in a build folder may be an older copy of what lies outside.
+    outside = any(not lies_aside(one.name) and set(tasks) & set(one.written) for one in candidates)
     for one in candidates:
         mine = tuple(name for name in tasks if name in one.defines)
         written = tuple(name for name in mine if name in one.written)
@@ -630,18 +691,36 @@ def found_for(
         alike = alike if alike >= _ALIKE else 0.0
         if mine or alike or one in asked:
             # What cannot be read as code can be named, and not proposed.
-            worth, alike = (len(written), alike + 0.1 * bool(mine)) if one.kind in _READABLE else (0, 0.0)
+            worth, alike = len(written), alike + 0.1 * bool(mine)
+            if one.kind not in _READABLE or (outside and lies_aside(one.name)):
+                worth, alike = 0, 0.0
             ranked.append((worth, alike, msgspec.structs.replace(one, defines=mine, written=written)))
     ranked.sort(
-        key=lambda item: (-item[0], -item[1], not item[2].name.casefold().endswith(HANDED_IN), item[2].name)
+        key=lambda item: (
+            -item[0],
+            -item[1],
+            not item[2].name.casefold().endswith(HANDED_IN),
+            _is_notebook(item[2]),
+            item[2].name,
+        )
     )
     most = ranked[0][0] if ranked else 0
-    distinct = {item[2].sha256: item[0] or item[1] for item in reversed(ranked)}
+    # A notebook and a module with its code are one.
+    modules = {item[2].code for item in ranked if item[0] and not _is_notebook(item[2])}
+    distinct = {
+        item[2].sha256: item[0] or item[1]
+        for item in reversed(ranked)
+        if not (_is_notebook(item[2]) and item[2].code in modules)
+    }
     best = most or max(distinct.values(), default=0.0)
     # Two equally good files that differ: the grader must not decide which one counts.
     clear = best > 0 and list(distinct.values()).count(best) == 1
     found = [one for *_, one in ranked]
     return tuple(msgspec.structs.replace(one, proposed=clear and one is found[0]) for one in found)
+
+
+def _is_notebook(one: Candidate) -> bool:
+    return one.kind == "a notebook" or one.name.casefold().endswith(".ipynb")
 
 
 def described(candidates: Sequence[Candidate]) -> str:

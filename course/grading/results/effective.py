@@ -25,6 +25,7 @@ from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import (
+    ELSEWHERE,
     Decision,
     GradedExercise,
     Key,
@@ -108,6 +109,15 @@ class Effective:
     def unsettled(self) -> bool:
         """Whether it is a zero that no instructor has decided on: not gradable, and no score by hand."""
         return self.verdict.state == "ungradable" and self.override is None
+
+    @property
+    def elsewhere(self) -> str:
+        """The functions that are written only in a file that was not graded, and in which; empty if there are
+        none, or if no point is lost or a score by hand counts."""
+        if self.override is not None or self.verdict.score >= self.max_score:
+            return ""
+        notes = (note for note in self.verdict.warnings if note.startswith(ELSEWHERE))
+        return next(notes, "").removeprefix(ELSEWHERE).rstrip(".")
 
     @property
     def raw_score(self) -> float | None:

@@ -53,15 +53,25 @@ _MOODLE = {
     "sis_user_id": "ID number", "login": "Username",
 }  # fmt: skip
 #: Moodle's worksheet in German, known by a heading that nothing else has.
-_GERMAN_SIGN = "Zuletzt geändert (Bewertung)"
+_GERMAN_SIGN = "zuletzt geändert (bewertung)"
 _GERMAN = {
     "ID": "Identifier", "Vollständiger Name": "Full name", "E-Mail-Adresse": "Email address",
     "ID-Nummer": "ID number", "Anmeldename": "Username", "Bewertung": "Grade", "Bestwertung": "Maximum Grade",
     "Bewertung kann geändert werden": "Grade can be changed",
-    "Zuletzt geändert (Abgabe)": "Last modified (submission)", _GERMAN_SIGN: "Last modified (grade)",
-    "Feedback als Kommentar": "Feedback comments",
+    "Zuletzt geändert (Abgabe)": "Last modified (submission)",
+    "Zuletzt geändert (Bewertung)": "Last modified (grade)", "Feedback als Kommentar": "Feedback comments",
 }  # fmt: skip
 _GRADESCOPE = {"sis_user_id": "SID", "email": "Email", "name": "Name"}
+#: The platforms' headings by their small letters: Moodle's versions write "Maximum Grade" or "Maximum grade".
+_SPELLED = {
+    name.casefold(): name
+    for name in (
+        *_CANVAS.values(), "LastName", "FirstName", "Section", *_GERMAN.values(), *_GRADESCOPE.values(),
+        "First Name", "Last Name", "Role", "Sections",
+    )
+    if name != "Student"  # in small letters it is a roster of our own
+}  # fmt: skip
+_GERMAN_SPELLED = {german.casefold(): english for german, english in _GERMAN.items()}
 #: Canvas' own student, with whom a teacher tries an assignment: "Student, Test" in its gradebook.
 _TEST_STUDENT = re.compile(r"studenttest(_[0-9]+)?")
 FOR_TESTS = "Canvas' student for tests"
@@ -265,7 +275,7 @@ def csv_reader(text: str) -> csv.DictReader[str]:
 
 def headings_of(reader: csv.DictReader[str]) -> list[str]:
     """The headings, in English, by which the rows are known from here on."""
-    headings = in_english([str(name).strip() for name in reader.fieldnames or ()])
+    headings = in_english([str(name) for name in reader.fieldnames or ()])
     reader.fieldnames = headings
     return headings
 
@@ -280,8 +290,13 @@ def read_text(path: Path) -> str:
 
 
 def in_english(headings: list[str]) -> list[str]:
-    """The headings of Moodle's worksheet as they are in English; others unchanged."""
-    return [_GERMAN.get(name, name) for name in headings] if _GERMAN_SIGN in headings else headings
+    """A platform's headings as they are here, whatever their letter case, and Moodle's worksheet in
+    English; others unchanged."""
+    stripped = [name.strip() for name in headings]
+    if "student" in stripped:  # a roster of our own
+        return stripped
+    spelled = _GERMAN_SPELLED if _GERMAN_SIGN in [name.casefold() for name in stripped] else _SPELLED
+    return [spelled.get(name.casefold(), name) for name in stripped]
 
 
 #: Turns a row into a person, or None if the row is not about a person.

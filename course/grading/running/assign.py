@@ -110,7 +110,7 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
     elif exercise == "quiz":
         raise UsageError(
             "A quiz is graded from its record, which no file is assigned for.",
-            help="Put the zip of `course submit` into the student's folder and grade with --resume, or give "
+            help="Leave one zip of `course submit` in the student's folder and grade with --resume, or give "
             "the score with `course grade override`.",
             code="needs_exercise",
         )
@@ -149,7 +149,8 @@ def _lying(results: Results, student: str, file: str) -> tuple[Path, str] | None
     if place is None:
         return None
     if place.files is None:
-        return _cut(place.root / file)
+        # As lists call it: a folder around everything was passed over.
+        return _cut(place.root / file) or _cut(place.unwrapped(()).root / file)
     above, _, member = file.partition("/")
     return next(((path, member) for name, path in place.files if name == above), None)
 

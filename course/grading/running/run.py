@@ -77,6 +77,7 @@ class Summary:
         unjudged: checks whose own code broke on a submission, a sentence each.
         pass_marks: of the exercises with results: the points that pass, and all points.
         unsettled: entries that could not be graded and have no score by hand.
+        elsewhere: graded submissions without functions that another file has, a sentence each.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
         write_s: of the seconds, those spent on writing the gradebook.
     """
@@ -99,6 +100,7 @@ class Summary:
     graders: str = ""
     pass_marks: list[tuple[float, float]] = field(default_factory=list)
     unsettled: int = 0
+    elsewhere: list[str] = field(default_factory=list)
     edited: list[str] = field(default_factory=list)
     seed: int = 0
     elapsed_s: float = 0.0
@@ -131,6 +133,8 @@ class Summary:
             self.states["graded" if settled else verdict.state] += 1
             self.passed += effective.passed
             self.unsettled += effective.unsettled
+            if effective.elsewhere:
+                self.elsewhere.append(f"{effective.student} {effective.exercise}: {effective.elsewhere}")
             if verdict.isolation:
                 self.levels[verdict.isolation] += 1
             broken += broken_checks(effective)

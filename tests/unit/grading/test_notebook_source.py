@@ -35,6 +35,15 @@ def source_of(*cells):
     return notebook_source(notebook(*cells), EXERCISE)
 
 
+@pytest.mark.parametrize("more", [(), (code("import math"),)])
+def test_code_in_a_cell_that_is_no_python_is_named_with_its_first_line(more):
+    with pytest.raises(UngradableError) as caught:
+        source_of(code("%%writefile springs.py\ndef force(x):\n    return -x\n"), *more)
+    message = "the notebook has its code in cell 1, which begins with '%%writefile springs.py':"
+    assert message in caught.value.message
+    assert caught.value.code == "no_declared_functions"
+
+
 def run(source):
     """The names that the module defines."""
     names = {}

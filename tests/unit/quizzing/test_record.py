@@ -170,7 +170,7 @@ def change(record, **changes):
         (lambda r: r, "malformed"),
         (lambda r: [r, None], "malformed"),
         (lambda r: None, "malformed"),
-        (lambda r: "x", "malformed"),
+        (lambda r: "x", "cannot be scored. x."),
         (lambda r: 3, "malformed"),
         (lambda r: [[[]]], "malformed"),
         (lambda r: {"a": r}, "malformed"),

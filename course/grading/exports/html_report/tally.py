@@ -200,6 +200,7 @@ class Tally:
         reasons: number of those by exercise, state and code.
         untimed: number of results without a trusted submission time.
         flagged: number of results that the download calls late, without saying by how much.
+        elsewhere: graded without functions that another file of the student's has.
     """
 
     def __init__(self, exercises: Iterable[GradedExercise]) -> None:
@@ -214,6 +215,7 @@ class Tally:
         self.penalised = 0
         self.untimed = 0
         self.flagged = 0
+        self.elsewhere = CappedList()
         self.first, self.last = "", ""
         self._slowest: list[tuple[float, str, str]] = []
 
@@ -225,6 +227,8 @@ class Tally:
                 continue
             if effective.override is not None:
                 self.overrides.take(effective)
+            if effective.elsewhere:
+                self.elsewhere.take(effective)
             if effective.result.number:
                 if effective.late is not None:
                     self.late.take(effective)

@@ -1,6 +1,7 @@
 """`course grade assign|log|salvage`, and what `--dry-run` and `--resume` say before a score changes."""
 
 import dataclasses
+import html
 import io
 import json
 import shutil
@@ -153,6 +154,46 @@ def test_who_is_called_as_two_are_is_asked_back_and_nobody_s_log_is_refused(cour
         assert course("grade", "log", "named", *about, "--json").code == 5, about
 
 
+def test_a_file_with_functions_that_the_graded_one_lacks_is_listed_until_one_of_them_is_assigned(
+    course, here, monkeypatch
+):
+    half = verdict(check("shown", Status.FAIL))
+    monkeypatch.setattr(batch, "grade_all", lambda entries, *_, **__: [Graded(one, half) for one in entries])
+    ada = here / "class" / "ada"
+    (ada / "doubling.py").write_text("def double(x):\n    return 2 * x\n")
+    (ada / "new").mkdir()
+    (ada / "new" / "doubling.py").write_text(SOURCE)
+    (here / "class" / "bob" / "doubling.py").write_text(SOURCE)
+    named = "ada doubling: doublings in 'new/doubling.py'"
+    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
+    assert f"1 graded without functions that another file has:\n  {named}\n" in ran.out
+    assert "`course grade assign new STUDENT FILE --exercise ID --reason TEXT` grades that" in ran.out
+    again = ("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--resume", "--json")
+    assert json.loads(course(*again).out.splitlines()[-1])["elsewhere"] == [named]
+    assert course("grade", "rerun", "new", "--all").code == 0
+    assert named in course("grade", "assign", "new").out
+    assert course("grade", "assign", "new", "--json").json["elsewhere"] == [named]
+    assert "Doubling (doublings in 'new/doubling.py')" in html.unescape(
+        (here / "new/report.html").read_text()
+    )
+    settled = ("grade", "assign", "new", "ada", "doubling.py", "--exercise", "doubling", "--reason", "asked")
+    assert course(*settled).code == 0
+    assert course("grade", "assign", "new", "--json").json["elsewhere"] == []
+
+
+def test_an_assignment_under_a_score_by_hand_says_whose_points_count(course, here):
+    course("grade", "override", "out", "bob", "doubling", "--score", "3", "--reason", "oral")
+    ran = course("grade", "assign", "out", "bob", "hw.py", "--exercise", "doubling", "--reason", "his")
+    assert "graded, 3 of 10 by hand (the checks gave 10); from 'hw.py'" in " ".join(ran.out.split())
+
+
+def test_a_regrading_names_the_exercise_that_its_graders_do_not_have(course, here):
+    shutil.move(here / "content" / "exercises" / "doubling", here / "doubling")
+    ran = course("grade", "rerun", "out", "--all")
+    assert "These graders do not have the exercise doubling; unchanged: " in ran.out, ran.err
+    assert "Without a submission" not in ran.out
+
+
 def test_what_was_said_of_a_file_stays_when_it_is_graded_again(course, here):
     (here / "class" / "ada" / "more.py").write_text(SOURCE + "# another\n")
     course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
@@ -255,8 +296,10 @@ def test_no_file_is_offered_for_a_quiz(course, here):
     shutil.copytree(MINI.parents[2] / "quiz", here / "content" / "quiz", dirs_exist_ok=True)
     (here / "class" / "ada" / "submission.json").write_text("[1")
     course("grade", "run", "class", "--out", "new", "--exercise", "quiz")
-    told = course("grade", "assign", "new").out
-    assert "`course grade override new ada quiz --score 0 --reason TEXT` gives a score by hand." in told
+    told = " ".join(course("grade", "assign", "new").out.split())
+    assert (
+        "`course grade override new ada quiz --score 0 --reason TEXT` gives a score by hand; --resume" in told
+    )
     refused = course("grade", "assign", "new", "ada", "x.py", "--exercise", "quiz", "--reason", "x", "--json")
     assert "A quiz is graded from its record" in refused.json["error"]["message"]
 

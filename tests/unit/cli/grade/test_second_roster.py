@@ -242,10 +242,22 @@ def test_whom_canvas_excuses_stays_excused(course, out):
     write(out.parent, "canvas.csv", CANVAS.replace(",bob,A,", ",bob,A,EX"))
     ran = course(*TO_CANVAS, "canvas.csv")
     assert '"bob","A","EX"' in (out / "canvas.csv").read_text(), "an empty cell takes the excuse away"
-    assert "Who is excused in Canvas stays so: bob doubling (EX)." in ran.out
+    assert "handed in nothing here, stays so: bob doubling (EX)." in " ".join(ran.out.split())
     assert course(*TO_CANVAS, "canvas.csv", "--json").json["kept"] == ["bob doubling (EX)"]
     assert course(*TO_CANVAS, "canvas.csv", "--overwrite").code == 0
     assert '"bob","A","10"' in (out / "canvas.csv").read_text()
+
+
+def test_a_score_that_canvas_has_is_no_zero_where_nothing_was_handed_in(course, out):
+    write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", ",gus,A,8.50"))
+    ran = course(*TO_CANVAS, "canvas.csv", "--missing", "zero", "--json")
+    assert '"gus","A","8.50"' in (out / "canvas.csv").read_text()
+    assert ran.json["kept"] == ["petitgus_107 doubling (8.50)"]
+    assert course(*TO_CANVAS, "canvas.csv", "--missing", "zero", "--overwrite").code == 0
+    assert '"gus","A","0"' in (out / "canvas.csv").read_text()
+    write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", ",gus,A,-1"))
+    assert course(*TO_CANVAS, "canvas.csv", "--missing", "zero").code == 0
+    assert '"gus","A","0"' in (out / "canvas.csv").read_text(), "what begins like a formula is not written"
 
 
 def test_what_canvas_has_and_we_have_not_is_written_back(course, out):

@@ -171,6 +171,35 @@ def test_the_grade_is_on_moodles_scale_with_its_comma(tmp_path, out):
     assert taken_by_moodle(tmp_path / "back.csv", 12.5)["101"][0] == 12.5
 
 
+@pytest.mark.parametrize(
+    "heading", ["Maximum grade", "maximum grade", pytest.param(" MAXIMUM GRADE ", id="capitals and spaces")]
+)
+def test_moodles_headings_are_known_whatever_their_letter_case(tmp_path, out, heading):
+    """Source: moodle/mod/assign/lang/en/assign.php, ``maxgrade``."""
+    at = HEADINGS.index("Maximum Grade")
+    sheet = write(
+        tmp_path / "s.csv",
+        [[*row[:at], "12.50", *row[at + 1 :]] for row in SHEET],
+        [*HEADINGS[:at], heading, *HEADINGS[at + 1 :]],
+    )
+    written = filled(out, sheet, tmp_path / "back.csv")
+    head, *rows = cells_of(tmp_path / "back.csv")
+    assert head[at] == heading, "as it came"
+    assert rows[0][4] == "12.5"
+    assert not [note for note in written.notes if "no maximum" in note]
+
+
+def test_scores_that_no_maximum_scales_are_named(tmp_path, out):
+    at = HEADINGS.index("Maximum Grade")
+    empty = [[*row[:at], "" if row is SHEET[0] else row[at], *row[at + 1 :]] for row in SHEET]
+    written = filled(out, write(tmp_path / "s.csv", empty), tmp_path / "back.csv")
+    assert [note for note in written.notes if "no maximum grade for 1 row: the scores of doubling" in note]
+    without = [[*row[:at], *row[at + 1 :]] for row in SHEET]
+    sheet = write(tmp_path / "s.csv", without, [*HEADINGS[:at], *HEADINGS[at + 1 :]])
+    written = filled(out, sheet, tmp_path / "back.csv")
+    assert [note for note in written.notes if "no maximum grade for 2 rows" in note], written.notes
+
+
 def test_an_anonymous_worksheet_calls_its_rows_as_the_download_calls_its_folders(tmp_path):
     rows = [[row[0], *row[3:]] for row in SHEET]
     people = read_roster(write(tmp_path / "s.csv", rows, [HEADINGS[0], *HEADINGS[3:]])).people

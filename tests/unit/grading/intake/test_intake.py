@@ -448,3 +448,36 @@ def test_no_record_of_a_quiz_hurts_whoever_asked(tmp_path, quiz):
     assert isinstance(record, str)
     verdict = grade_quiz(Bank(()), record)
     assert (verdict.state, verdict.error.code) == ("ungradable", "quiz_record_inconsistent")
+
+
+def attempts(*seeds):
+    """A zip of `course submit` with an attempt for each seed."""
+    quiz = [
+        {"seed": seed, "version": "1", "finished_at": "", "questions": [], "answers": {}, "score": 0}
+        for seed in seeds
+    ]
+    return zipped({"submission.json": json.dumps({"format_version": 1, "files": {}, "quiz": quiz})})
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [((5,), (5, 6)), ((5, 6), (5,)), ((5, 6), (5, 6)), ((), (5, 6)), ((5, 6), ())]
+)
+def test_of_two_quiz_records_the_one_counts_that_continues_the_other(tmp_path, first, second):
+    put(tmp_path / "a.zip", attempts(*first))
+    put(tmp_path / "b.zip", attempts(*second))
+    record, path = students.read_quiz(Student("ada", Place(tmp_path)))
+    assert [one["seed"] for one in record] == [5, 6]
+    assert path.name == ("a.zip" if len(first) == 2 else "b.zip")
+
+
+def test_quiz_records_of_which_none_has_all_attempts_are_named_and_not_called_malformed(tmp_path):
+    put(tmp_path / "a.zip", attempts(5, 6))
+    put(tmp_path / "b.zip", attempts(7))
+    with pytest.raises(UngradableError) as caught:
+        students.read_quiz(Student("ada", Place(tmp_path)))
+    assert caught.value.message == "Several files hold different quiz attempts: 'a.zip', 'b.zip'."
+    verdict = grade_quiz(Bank(()), caught.value.message.rstrip("."))
+    assert verdict.error.message == (
+        "The quiz cannot be scored. Several files hold different quiz attempts: 'a.zip', 'b.zip'."
+    )
+    assert "grade with --resume" in verdict.error.help

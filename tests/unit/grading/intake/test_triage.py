@@ -11,6 +11,7 @@ import tarfile
 import pytest
 
 from course.errors import NotFoundError, UngradableError
+from course.grading.gradebook.records import ELSEWHERE
 from course.grading.intake import students
 from course.grading.intake.downloads import DEEP
 from course.grading.intake.students import Candidate, found_for
@@ -108,6 +109,29 @@ def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(tmp_path, do
     assert "more than 5 MB" in problem.message
 
 
+@pytest.mark.parametrize(
+    ("graded", "other", "told"),
+    [
+        (b"def double(x):\n    return 2 * x\n", SOURCE, "doublings"),
+        (HALF, SOURCE, "doublings"),
+        (SOURCE, HALF, ""),
+        (b"def double(x):\n    return 2 * x\ndoublings = lambda x, n: x\n", SOURCE, ""),
+        (b"x = 1\n", SOURCE, "double, doublings"),
+    ],
+)
+def test_functions_that_only_another_file_has_are_named(tmp_path, doubling, graded, other, told):
+    lay(tmp_path, **{"doubling.py": graded, "final.py": other})
+    said = [note for note in read(tmp_path, doubling).notes if note.startswith(ELSEWHERE)]
+    assert said == ([f"{ELSEWHERE}{told} in 'final.py'."] if told else [])
+
+
+def test_a_file_in_a_folder_around_everything_is_assigned_by_the_name_that_is_listed(tmp_path, catalog):
+    lay(tmp_path / "class", **{"hw/doubling.py": HALF, "hw/new/a.py": SOURCE, "hw/b.txt": b"x"})
+    graded(tmp_path, catalog)
+    with open_results(tmp_path / "out") as results:
+        assert named(results, "ada", "new/a.py", "doubling").path.parts[-4:] == ("ada", "hw", "new", "a.py")
+
+
 #: What is asked about -> the code, and the one match there is.
 ASKED = {
     "another name": ({"homework.py": SOURCE}, "no_file", "homework.py"),
@@ -129,6 +153,21 @@ ASKED = {
     "of which one is nothing": (
         {"doubling.py": b"x = 1\n", "doubling (1).py": OTHER}, "ambiguous_files", "doubling (1).py"
     ),
+    "a notebook and its code": ({"doubling.py": SOURCE, "doubling.ipynb": NOTEBOOK}, "ambiguous_files",
+        "doubling.py"),
+    "a notebook and its code, of Windows": (
+        {"a.py": SOURCE.replace(b"\n", b"\r\n"), "a.ipynb": NOTEBOOK}, "no_file", "a.py"
+    ),
+    "a notebook and other code": ({"doubling.py": SOURCE.replace(b"2", b"3"), "doubling.ipynb": NOTEBOOK},
+        "ambiguous_files", None),
+    "a notebook with another constant": (
+        {"a.py": b"G = 9\n" + SOURCE, "b.ipynb": notebook("G = 10\n" + SOURCE.decode())}, "no_file", None
+    ),
+    "in a build folder": ({"build/doubling.py": SOURCE}, "no_file", "build/doubling.py"),
+    "in an editor's folder": ({".vscode/a/work.py": SOURCE, ".vscode/a.json": b"{}"}, "no_file",
+        ".vscode/a/work.py"),
+    "an older build": ({"hw.py": SOURCE, "dist/hw.py": OTHER}, "no_file", "hw.py"),
+    "a stub, and a build": ({"doubling.py": STUB, "build/a.py": SOURCE}, "ambiguous_files", "build/a.py"),
     "in file and zip": (
         {"doubling.py": SOURCE, "a.zip": zipped({"doubling.py": OTHER})}, "ambiguous_files", None
     ),
@@ -178,6 +217,10 @@ ODDLY = {
     "one function": ({"hw.py": b"def doublings(x, n):\n    return x\n"}, "hw.py", ""),
     "7z": ({"doubling.7z": b"7z\xbc\xaf\x27\x1c rest"}, "", "a 7z archive, which nothing here opens"),
     "rar": ({"work.rar": b"Rar!\x1a\x07\x00"}, "", "a rar archive, which nothing here opens"),
+    "a build in a zip": (
+        {"all.zip": zipped({"build/doubling.py": SOURCE})}, "",
+        "a zip archive with code only where none is looked for: 'build/doubling.py'",
+    ),
     "damaged": ({"all.tar.gz": b"\x1f\x8b and no more"}, "", "it cannot be read (it is damaged)"),
     "PDF": ({"doubling.pdf": b"%PDF-1.7"}, "", "a PDF document"),
     "Word": ({"doubling.docx": zipped({"word/document.xml": b""})}, "", "a document of an office program"),
@@ -282,6 +325,27 @@ def test_an_environment_of_any_name_does_not_count(tmp_path, doubling):
     ada, bob = read_class(tmp_path, [doubling], required=True)
     assert ada.submission is not None, ada.problem
     assert (bob.submission is not None, bob.notes) == (True, ())
+
+
+def test_copies_that_machines_make_are_not_listed_as_work(tmp_path, doubling):
+    made = (
+        "site-packages",
+        "node_modules",
+        ".ipynb_checkpoints",
+        "build/__pycache__",
+        ".git/hooks",
+        "m.egg-info",
+    )
+    lay(tmp_path, **{f"{folder}/doubling.py": SOURCE for folder in made}, **{"a.txt": b"x"})
+    assert [one.name for one in read(tmp_path, doubling).found.candidates] == ["a.txt"]
+
+
+def test_a_large_build_folder_hides_no_work_beside_it(tmp_path, doubling, monkeypatch):
+    monkeypatch.setattr(students, "_ENTRIES", 20)
+    lay(
+        tmp_path, **{f"build/m{n}.py": b"x = 1\n" for n in range(40)}, **{"mine/hw.py": SOURCE, "z.txt": b"x"}
+    )
+    assert [one.name for one in read(tmp_path, doubling).found.candidates if one.proposed] == ["mine/hw.py"]
 
 
 def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path, doubling):

@@ -279,10 +279,10 @@ QUIZZED = {
         {"a.zip": {"submission.json": "{both}", "halving.py": "x"}, "submission.json": "{both}"},
         "graded", "graded",
     ),
-    "a damaged record": ({"a.zip": {"submission.json": "[1"}}, "malformed ('a.zip': its sub", "missing"),
-    "a damaged one, unpacked": ({"submission.json": "[1"}, "malformed ('submission.json': it is", "missing"),
+    "a damaged record": ({"a.zip": {"submission.json": "[1"}}, "scored. 'a.zip': its", "missing"),
+    "a damaged one, unpacked": ({"submission.json": "[1"}, "scored. 'submission.json':", "missing"),
     "a newer one": (
-        {"a.zip": {"submission.json": '{"format_version": 9}'}}, "malformed ('a.zip' was written", "missing"
+        {"a.zip": {"submission.json": '{"format_version": 9}'}}, "scored. 'a.zip' was", "missing"
     ),
     "two": (
         {"a.zip": {"submission.json": "{quiz}"}, "submission.json": "[1"}, "graded", "missing"

@@ -171,6 +171,14 @@ class Results:
             place = self._times.setdefault((self._owner(time.student), time.exercise), [])
             place.append((time.submission_sha256, time.source, time.at))
 
+    def tie_times(self, key: Key) -> None:
+        """Keep the times of a list with the work that they were given for: later work has none of them."""
+        mine = self._times.get((key.student, key.exercise), [])
+        if any(not sha256 for sha256, _, _ in mine):
+            for name in (key.student, *(name for name, at in self._arrived.items() if at == key.student)):
+                self.book.tie_times(name, key)
+            mine[:] = [(sha256 or key.submission_sha256, who, at) for sha256, who, at in mine]
+
     def _owner(self, name: str) -> str:
         """The student's name: what was decided under the roster's, before a folder came, is the folder's."""
         return name if name in self._with_folder else self._arrived.get(name, name)
@@ -364,9 +372,9 @@ class Results:
         known = self._times.get((key.student, key.exercise), ())
         return [(who, at) for sha256, who, at in known if sha256 in {"", key.submission_sha256}]
 
-    def _due(self, key: Key) -> float | None:
-        person = self.person(key.student)
-        names = (key.student, person.student) if person else (key.student,)
+    def _due(self, key: Key, *, extended: bool = True) -> float | None:
+        person = self.person(key.student) if extended else None
+        names = (key.student, *([person.student] if person else [])) if extended else ()
         granted = person.extension_days or 0.0 if person else 0.0
         return self.policy.due(key.exercise, names, granted) if self.policy else None
 
@@ -376,9 +384,17 @@ class Results:
 
     def hangs_on_the_clock(self, one: Effective) -> bool:
         """Whether a time without a zone decides a penalty: clocks may have changed since the deadline."""
+        return self._hangs(one, self._due(one.result.key), one.submitted_at)
+
+    def hangs_on_an_extension(self, one: Effective) -> bool:
+        """Whether an hour decides a penalty, and clocks may have changed while an extension ran."""
+        first, last = (self._due(one.result.key, extended=extended) for extended in (False, True))
+        return first != last and self._hangs(one, first, last)
+
+    def _hangs(self, one: Effective, first: float | None, last: float | None) -> bool:
+        """Whether an hour decides a penalty, and clocks may have changed between two times."""
         key, at = one.result.key, one.submitted_at
-        due = self._due(key)
-        if self.policy is None or at is None or due is None or not may_change(due, at):
+        if self.policy is None or at is None or first is None or last is None or not may_change(first, last):
             return False
         score, hour = one.verdict.score, 3600.0
         hours = (self._late(key, at + shift) for shift in (-hour, 0.0, hour))
@@ -453,13 +469,22 @@ def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[list[ScoreChan
 
 
 @contextlib.contextmanager
-def replacing(book: Gradebook, view: Results, key: Key) -> Iterator[None]:
-    """Note in the journal if the result that this block puts in the place of another changes what counts."""
+def replacing(book: Gradebook, view: Results, key: Key, untimed: list[str]) -> Iterator[None]:
+    """Note in the journal if the result that this block puts in the place of another changes what counts.
+
+    Args:
+        untimed: gets the student and exercise if the work that counts now has no trusted time any more.
+    """
     before = next(view.all(key.student, key.exercise), None)
+    was = before.result.key if before is not None and before.result.number else key
+    if was.submission_sha256 != key.submission_sha256:
+        view.tie_times(was)
     yield
     after = next(view.all(key.student, key.exercise), None)
     if before is None or after is None or before.waiting:
         return  # it is the first
+    if before.submitted_at is not None and after.submitted_at is None and view.policy is not None:
+        untimed.append(f"{key.student} {key.exercise}")
     if (before.verdict.state, before.score) != (after.verdict.state, after.score):
         told = counted(before), counted(after)
         book.note(Decision("", "", "resume", key.student, key.exercise, "another submission", *told))

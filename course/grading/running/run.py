@@ -69,6 +69,7 @@ class Summary:
         already: results of an earlier run.
         stay: of these, those whose file is gone, or is assigned and has changed; a sentence each.
         lower: scores that are lower than before a resumed run, a sentence each.
+        untimed: "student exercise" of new work without a trusted time, where the earlier work had one.
         missing: students who handed in nothing at all: enrolled, or without a roster those with a folder.
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
@@ -91,6 +92,7 @@ class Summary:
     already: int = 0
     stay: list[str] = field(default_factory=list)
     lower: list[str] = field(default_factory=list)
+    untimed: list[str] = field(default_factory=list)
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
     moved: list[ScoreChange] = field(default_factory=list)
@@ -428,7 +430,9 @@ class _Run:
 
     def replacing(self, key: Key) -> AbstractContextManager[None]:
         """Where a result takes the place of another: only a resumed run finds one."""
-        return replacing(self._book, self.view, key) if self._options.resume else contextlib.nullcontext()
+        if not self._options.resume:
+            return contextlib.nullcontext()
+        return replacing(self._book, self.view, key, self.summary.untimed)
 
     def _note_found(self, entry: Entry) -> None:
         about = (entry.student, entry.exercise.id)

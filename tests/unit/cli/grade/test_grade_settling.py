@@ -287,6 +287,25 @@ def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here):
     )
 
 
+def test_a_time_in_a_list_is_not_that_of_other_work_which_comes_later(course, here):
+    (here / "late.toml").write_text(
+        'format_version = 1\npercent_per_day = 10\n[[deadline]]\nexercise = "*"\ndue = 2026-01-01T00:00:00Z\n'
+    )
+    (here / "times.csv").write_text("student,exercise,submitted_at\nada,doubling,2026-01-01T12:00:00Z\n")
+    course("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv")
+    again = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+    (here / "class" / "ada" / "doubling.py").write_text(SOURCE + "# more\n")
+    told = json.loads(course(*again, "--json").out.splitlines()[-1])
+    assert told["untimed"] == ["ada doubling"]
+    assert "no trusted submission time" in course("grade", "late", "out").out
+    rows = {row["student"]: row for row in read_csv(here / "out" / "grades.csv")}
+    assert (rows["ada"]["submitted_at"], rows["ada"]["score"]) == ("", "10")
+    (here / "class" / "ada" / "doubling.py").write_text(SOURCE)  # as it was, when it was
+    course(*again)
+    rows = {row["student"]: row for row in read_csv(here / "out" / "grades.csv")}
+    assert (rows["ada"]["submitted_at"], rows["ada"]["score"]) == ("2026-01-01T12:00:00Z", "9")
+
+
 def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(course, here, monkeypatch):
     checks = here / "content" / "graders" / "doubling" / "checks.py"
     checks.write_text(checks.read_text() + "# edited\n")

@@ -143,7 +143,7 @@ def late(
                 joined = merged(Results(book), people, lasting=True)
                 book.set_meta(roster=joined.roster.dump())
                 dropped = joined.dropped
-            known = _times(Results(book), listed, exercise)
+            known, unused = _times(Results(book), listed, exercise)
             if known:
                 book.add_times(known, replace=True)
         results = Results(book)
@@ -151,12 +151,24 @@ def late(
         late_ones = [item for item in handed_in if item.late is not None or item.flagged_late]
         found = [filled(LateOne, one, submitted_at=utc(one.submitted_at) or None) for one in late_ones]
         unknown_time = sum(item.submitted_at is None for item in handed_in) if results.policy else 0
-        unknown = _unknown(results, known)
+        unknown = unused + _unknown(results, known)
         unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
+        short = [one_line(item.student) for item in late_ones if results.hangs_on_an_extension(item)]
+        extended = _extended(results, known, listed) if isinstance(listed, Worksheet) else []
     if unsure:
         console.warn(
             f"{times} says no time zone. If the clock changed near the deadline, an hour may cost or spare"
             f" points of {some(unsure, _SHOWN)}: give their times in a list, with the distance from UTC."
+        )
+    if short:
+        console.warn(
+            f"A day of an extension has 24 hours. If the clock changed within it, an hour may cost points of"
+            f" {some(short, _SHOWN)}: with `days = 1.042`, say, a day is an hour longer."
+        )
+    if extended:
+        console.warn(
+            f"By {times}, Moodle gave {some(extended, _SHOWN)} more time. That does not count here: write it"
+            " into the policy ([[extension]]) or the roster (extension_days)."
         )
     if not console.json:
         _show_late(console, results, found, unknown_time, unknown)
@@ -181,10 +193,11 @@ def late(
 
 def _times(
     results: Results, listed: list[SubmittedAt] | Worksheet, exercise: str | None
-) -> list[SubmittedAt]:
-    """The times in a list; those of a worksheet need an exercise and its deadline."""
+) -> tuple[list[SubmittedAt], list[str]]:
+    """The times in a list; those of a worksheet need an exercise and its deadline, and some of its rows may
+    fit no student."""
     if not isinstance(listed, Worksheet):
-        return [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed]
+        return [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed], []
     ids = [item.id for item in results.exercises() if item.id != "quiz"]
     name = exercise or (ids[0] if len(ids) == 1 else "")
     if name not in ids:
@@ -198,7 +211,9 @@ def _times(
     people = read_roster(listed.path)
     found = people.match(results.students(), results.downloads)[0]
     students = {person.moodle_key: student for student, person in found.items()}
-    return worksheet_times(listed, students, name, due.tzinfo)
+    unused = [one.student for one in people.people if one.moodle_key in listed.times.keys() - students.keys()]
+    told = [f"one student for the row of {student} in {listed.path}" for student in unused]
+    return worksheet_times(listed, students, name, due.tzinfo), told
 
 
 def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
@@ -206,6 +221,16 @@ def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
     exercises, listed = {time.exercise for time in known}, {time.student for time in known}
     mine = (one for one in results.all() if one.student in listed and one.exercise in exercises)
     return [one_line(item.student) for item in mine if results.hangs_on_the_clock(item)]
+
+
+def _extended(results: Results, known: list[SubmittedAt], sheet: Worksheet) -> list[str]:
+    """Who is late, and has more time by a worksheet."""
+    people = read_roster(sheet.path)
+    found = people.match((time.student for time in known), results.downloads)[0]
+    exercises = {time.exercise for time in known}
+    mine = {student for student, person in found.items() if person.moodle_key in sheet.extended}
+    late_ones = (one for one in results.all() if one.late is not None and one.exercise in exercises)
+    return [one_line(one.student) for one in late_ones if one.student in mine]
 
 
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:

@@ -311,12 +311,17 @@ class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=True):
-    """The assigned files, and the cases that are left."""
+    """The assigned files, those taken back (``lifted``), and the cases that are left."""
 
     dry_run: bool
     assigned: tuple[AssignedOne, ...]
     unsettled: tuple[UnsettledOne, ...]
     unjudged: tuple[str, ...] = ()
+    lifted: tuple[AssignedOne, ...] = ()
+
+
+#: Whether there are STUDENT, FILE, --lift and --accept-names.
+_WAYS = {(False,) * 4, (True, True, False, False), (True, False, True, False), (False, False, False, True)}
 
 
 def assign(
@@ -329,6 +334,7 @@ def assign(
         str | None, option("--exercise ID", "Needed if it is not clear.", exercise_ids)
     ] = None,
     accept_names: Annotated[bool, option("--accept-names", "Accept every proposed match.")] = False,
+    lift: Annotated[bool, option("--lift", "Take the student's assigned file back.")] = False,
     reason: Annotated[str, option("--reason TEXT", "Kept with each result.")] = "",
     dry_run: Annotated[bool, option("--dry-run", "Grade and show, but store nothing.")] = False,
     jobs: opt.Jobs = 1,
@@ -340,13 +346,18 @@ def assign(
     Without STUDENT it lists the students without a submission, the files there are for each, the functions
     that each file defines, and the proposed match. No file is renamed; who decided, when and why is kept.
     """
-    if (student is None) != (file is None) or (student is not None and accept_names):
-        problem = "Give STUDENT and FILE, or --accept-names, or neither for a list."
+    if (student is not None, file is not None, lift, accept_names) not in _WAYS:
+        problem = "Give STUDENT and FILE, STUDENT and --lift, --accept-names, or none of them for a list."
         raise UsageError(problem, help="See `course grade assign -h`.")
     console = current()
     done: list[Assigned] = []
+    lifted: list[Assigned] = []
     waiting = 0
-    if student is None and not accept_names:
+    if student is not None and lift:
+        with previewed(out) if dry_run else open_results(out, writing=True) as results:
+            lifted = [assigning.lift(results, student, exercise, reason)]
+            left = assigning.unsettled(Results(results.book))
+    elif student is None and not accept_names:
         with open_results(out) as results:
             left = assigning.unsettled(results)
             waiting = len({item.student for item in results.all() if item.waiting})
@@ -369,39 +380,44 @@ def assign(
                 return done, assigning.unsettled(results)
 
         done, left = opt.agreed(console, assigned, yes=yes)
-    broke = unjudged(one for item in done for one in broken_checks(item.after))
+    broke = unjudged(one for item in done if item.after for one in broken_checks(item.after))
     if not console.json:
-        _show_assigned(console, done, dry_run=dry_run)
+        _show_assigned(console, done, lifted, dry_run=dry_run)
         show_unjudged(console, broke)
-        _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
+        _show_unsettled(
+            console, left, out, "would be left to settle" if (done or lifted) and dry_run else "to settle"
+        )
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
     unsettled = []
     for item in left:
         files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
         unsettled.append(filled(UnsettledOne, item, reason=item.found.reason, files=files))
-    ones = tuple(map(_assigned_one, done))
+    ones, back = (tuple(map(_assigned_one, items)) for items in (done, lifted))
     return console.answer(
-        GradeAssign(dry_run=dry_run, assigned=ones, unsettled=tuple(unsettled), unjudged=broke)
+        GradeAssign(dry_run=dry_run, assigned=ones, unsettled=tuple(unsettled), unjudged=broke, lifted=back)
     )
 
 
 def _assigned_one(item: Assigned) -> AssignedOne:
     one, before, after = item.assignment, item.before, item.after
-    scores = {"score_before": before.score if before else None, "score_after": after.score}
-    was = before.verdict.state if before else "missing"
-    states = {"state_before": was, "state_after": after.verdict.state}
+    was, now = (counts.verdict.state if counts else "missing" for counts in (before, after))
+    scores = {"score_before": before.score if before else None, "score_after": after.score if after else None}
+    states = {"state_before": was, "state_after": now}
     return filled(AssignedOne, one, file=one.name, **scores, **states)
 
 
-def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:
-    for item in done:
+def _show_assigned(console: Console, done: list[Assigned], lifted: list[Assigned], *, dry_run: bool) -> None:
+    for item in (*done, *lifted):
         one, after = _assigned_one(item), item.after
-        scored = f"{opt.points(after.score)} of {format_points(after.max_score)}"
-        words = f"{one.state_before} -> {one.state_after}, {scored}; from {quoted(one.file)}"
+        most = after.max_score if after and after.score is not None else None
+        words = f"{one.state_before} -> {one.state_after}, {opt.points(one.score_after, most)}"
+        words += f"; {'without' if item in lifted else 'from'} {quoted(one.file)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
+    if lifted:
+        console.line((f"1 {'would be taken' if dry_run else 'taken'} back.", "bold"))
 
 
 def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: str) -> None:

@@ -215,6 +215,15 @@ class Gradebook:
         packed = _masked(zlib.compress(msgspec.msgpack.encode(dict(files)), 1), os.urandom(_SALT))
         self._db.execute(row_into("submissions", "INSERT OR IGNORE"), (sha256, packed))
 
+    def take_back(self, key: Key, verdict: Verdict) -> None:
+        """Let no result count for a student and exercise any more; all are kept.
+
+        Args:
+            key: of the result that counts.
+            verdict: that nothing was handed in, for a version that knows no such rows.
+        """
+        self.add(Result(replace(key, submission_sha256="", grader_version=""), verdict))
+
     def restore(self, sha256: str, files: Mapping[str, bytes]) -> None:
         """Store the submission of a result, if it was lost."""
         if not self._rows("SELECT 1 FROM submissions WHERE sha256 = ?", sha256):
@@ -263,7 +272,7 @@ class Gradebook:
         """The newest result of each student and exercise, ordered by both."""
         where, arguments = _about(student, exercise)
         newest = f"number IN (SELECT max(number) FROM results{where} GROUP BY student, exercise)"
-        yield from self._results(f" WHERE {newest}", arguments)
+        yield from self._results(f" WHERE {newest} AND {_NOT_TAKEN_BACK}", arguments)
 
     def verify(self) -> None:
         """Look at every page, every decision, and all that opening leaves unread because it is large.
@@ -285,7 +294,8 @@ class Gradebook:
 
     def history(self, student: str, exercise: str) -> list[Result]:
         """Every result of a student and exercise, oldest first."""
-        return list(self._results(*_about(student, exercise)))
+        where, arguments = _about(student, exercise)
+        return list(self._results(f"{where} AND {_NOT_TAKEN_BACK}", arguments))
 
     def _results(self, where: str, arguments: tuple[str, ...]) -> Iterator[Result]:
         query = (
@@ -302,7 +312,10 @@ class Gradebook:
 
     def student_ids(self) -> list[str]:
         """All students with a result, by name."""
-        return [student for (student,) in self._rows("SELECT DISTINCT student FROM results ORDER BY 1")]
+        newest = "SELECT max(number) FROM results GROUP BY student, exercise"
+        where = f"number IN ({newest}) AND {_NOT_TAKEN_BACK}"
+        query = f"SELECT DISTINCT student FROM results WHERE {where} ORDER BY 1"
+        return [student for (student,) in self._rows(query)]
 
     def exercise_ids(self, *, handed_in: bool = False) -> list[str]:
         """All exercises with a result, by name; or those alone of which there is a submission."""
@@ -456,6 +469,10 @@ class Gradebook:
                 self._db.execute("PRAGMA wal_checkpoint(PASSIVE)")
                 self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
         self.write_s += time.perf_counter() - start
+
+
+#: The newest row of a student and exercise may say that no result counts: it names no submission.
+_NOT_TAKEN_BACK = "submission_sha256 != ''"
 
 
 class _State(msgspec.Struct):

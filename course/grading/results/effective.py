@@ -44,7 +44,6 @@ MISSING = "missing"
 NOT_YET = "not_graded_yet"
 _NOTHING = {
     MISSING: Problem("not_submitted", "Nothing was handed in."),
-    "ungradable": Problem("not_submitted", "Nothing was handed in.", "The score was set by the instructor."),
     NOT_YET: Problem(
         "not_graded_yet",
         "No run has looked at all of this student's work yet.",
@@ -323,9 +322,8 @@ class Results:
             may_wait = waits and about in self._exercises
             if (student, about) not in done and (by_hand or may_wait or about in asked):
                 done.add((student, about))
-                known = not waits and self.has_looked(student, about)
-                state = "ungradable" if by_hand else MISSING if known else NOT_YET
-                yield self.of(self._nothing(student, about, state))
+                known = by_hand or (not waits and self.has_looked(student, about))
+                yield self.of(self.nothing(student, about, MISSING if known else NOT_YET))
 
     def of(self, result: Result) -> Effective:
         """The effective result for a grading."""
@@ -409,7 +407,7 @@ class Results:
         # The tolerance is rounding of sums of points, not mercy.
         return noted is not None and score >= noted.pass_share * most - 1e-9
 
-    def _nothing(self, student: str, exercise: str, state: str) -> Result:
+    def nothing(self, student: str, exercise: str, state: str) -> Result:
         """Stands in for a grading where nothing was handed in."""
         noted = self._exercises.get(exercise)
         problem = _NOTHING[state]

@@ -311,7 +311,7 @@ class _Run:
         self._scored: deque[tuple[Result, dict[str, bytes]]] = deque()
         _check_assignment(members, book, out=book.path.parent)
         self._found = set(book.found())
-        self._assigned = _assigned(book)
+        self._assigned = assigned_in(book)
         before, looked = book.waiting(), book.looked()
         self._note_facts()
         self.view = Results(book)
@@ -493,15 +493,18 @@ class _Run:
         self._times.clear()
 
 
-def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str, str]]:
+def assigned_in(book: Gradebook) -> dict[tuple[str, str], tuple[str, str, str]]:
     """The submission that an assigned file took the place of, and the file with its name, by student and
-    exercise."""
+    exercise; none that was taken back."""
     found: dict[tuple[str, str], tuple[str, str, str]] = {}
     for one in book.journal():
         if one.kind == "assign":
             about, before = (one.student, one.exercise), counted_in(one.before).submission
             first, last, _ = found.get(about, (before, before, ""))  # a second one replaces the first
             now = counted_in(one.after)
+            if not now.file:
+                found.pop(about, None)
+                continue
             found[about] = (first if last == before else before), now.submission, now.file
     return found
 

@@ -261,6 +261,55 @@ def test_no_file_is_offered_for_a_quiz(course, here):
     assert "A quiz is graded from its record" in refused.json["error"]["message"]
 
 
+def test_a_file_assigned_to_the_wrong_student_is_taken_back(course, here):
+    (here / "roster.csv").write_text("student\nada\nbob\ncy\neve\n")
+    again = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+    course(*again, "--roster", "roster.csv")
+
+    def row(student):
+        found = {one["student"]: one for one in read_csv(here / "out" / "grades.csv")}[student]
+        return found["state"], found["reason"], found["score"]
+
+    was = row("bob"), row("eve")
+    assert (
+        course("grade", "assign", "out", "eve", "--lift", "--json").json["error"]["code"] == "no_assignment"
+    )
+    for student, file in (("eve", "class/bob/hw.py"), ("bob", "hw.py")):
+        course("grade", "assign", "out", student, file, "--exercise", "doubling", "--reason", "x")
+        assert row(student) == ("graded", "", "10")
+    before = book(here)
+    told = course("grade", "assign", "out", "eve", "--lift", "--dry-run").out
+    assert ("1 would be taken back." in told, book(here)) == (True, before)
+    told = course("grade", "assign", "out", "eve", "--lift").out
+    assert "eve doubling: graded -> missing, no score; without 'class/bob/hw.py'" in told
+    (lifted,) = course("grade", "assign", "out", "bob", "--lift", "--reason", "his", "--json").json["lifted"]
+    assert (lifted["file"], lifted["state_after"], lifted["score_after"]) == ("hw.py", "ungradable", 0.0)
+    assert (
+        (row("bob"), row("eve")) == was == (("ungradable", "no_file", "0"), ("missing", "not_submitted", ""))
+    )
+    course(*again)
+    assert (row("bob"), row("eve")) == was
+    assert "hw.py: defines double" in course("grade", "assign", "out").out
+    assert "eve" not in course("grade", "similar", "out").out
+    assert "10 of 10, 'class/bob/hw.py' -> no score" in course("grade", "log", "out", "eve").out
+    assert course("grade", "salvage", "out", "--to", "new").code == 0
+    assert '"eve","doubling",""' in (here / "new" / "grades.csv").read_text("utf-8")
+    course(
+        "grade", "assign", "out", "eve", "class/bob/hw.py", "--exercise", "doubling", "--reason", "after all"
+    )
+    assert row("eve") == ("graded", "", "10")
+    for words in (("eve", "hw.py", "--lift"), ("--lift",), ("eve", "--lift", "--accept-names")):
+        assert course("grade", "assign", "out", *words).code == 2
+
+
+def test_a_score_by_hand_for_nothing_is_no_work_that_could_not_be_graded(course, here):
+    (here / "roster.csv").write_text("student\nada\nbob\ncy\neve\n")
+    course("grade", "run", "class", "--out", "out", "--resume", "--roster", "roster.csv")
+    course("grade", "override", "out", "eve", "doubling", "--score", "3", "--reason", "oral")
+    row = {one["student"]: one for one in read_csv(here / "out" / "grades.csv")}["eve"]
+    assert (row["state"], row["score"], row["raw_score"]) == ("missing", "3", "")
+
+
 def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here):
     before = book(here)
     ran = course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x", "--dry-run")

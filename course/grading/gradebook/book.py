@@ -323,6 +323,11 @@ class Gradebook:
         nothing = hashlib.sha256().hexdigest() if handed_in else None
         return [exercise for (exercise,) in self._rows(query, nothing)]
 
+    def without_work(self) -> list[str]:
+        """The students whose folder held nothing to grade."""
+        with explained(self.path):
+            return msgspec.json.decode(self.meta().get("without_work", "[]"), type=list[str])
+
     def looked(self) -> dict[str, Looked] | None:
         """By exercise, whose work was looked at; None in a gradebook of a version that did not note it."""
         text = self.meta().get("looked")

@@ -142,7 +142,7 @@ class Results:
         with explained(book.path):
             self.seed = msgspec.json.decode(meta.get("seed", "0"), type=int)
             self.roster = roster or (Roster.load(meta["roster"]) if "roster" in meta else None)
-            self._without_work = set(msgspec.json.decode(meta.get("without_work", "[]"), type=list[str]))
+        self._without_work = set(book.without_work())
         self.waiting = book.waiting()
         self.looked = book.looked()
         self.downloads = book.students()

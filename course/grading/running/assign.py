@@ -27,7 +27,7 @@ from course.grading.results.effective import (
     no_exercise,
 )
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.run import GradeAll, assigned_in
+from course.grading.running.run import GradeAll, as_known, assigned_in
 from course.grading.running.snapshot import fresh, frozen, kept
 from course.printable import command, quoted
 from course.scoring.judging.submission import Terms
@@ -150,10 +150,10 @@ def _lying(results: Results, student: str, file: str) -> tuple[Path, str] | None
     """A file by its name in the student's folder, or its name on the platform; None if it is not there."""
     options = results.book.run_options()
     try:
-        students = class_list(Path(options.get("folder", "")), options.get("layout", "auto")).students
+        found = class_list(Path(options.get("folder", "")), options.get("layout", "auto"))
     except CourseError:
         return None
-    place = next((one.place for one in students if one.name == student), None)
+    place = next((one.place for one in as_known(found, results.book) if one.name == student), None)
     if place is None:
         return None
     if place.files is None:

@@ -261,6 +261,37 @@ def test_no_file_is_offered_for_a_quiz(course, here):
     assert "A quiz is graded from its record" in refused.json["error"]["message"]
 
 
+_META = "{0}:\n  :submitters:\n  - :name: Ada\n    :sid: '{1}'\n    :email: ada@u.x\n"
+
+
+@pytest.mark.parametrize(
+    ("first", "later"),
+    [
+        ("byronada_109_1_doubling.py", "lovelaceada_109_2_doubling-1.py"),
+        ("Ada Byron_109_assignsubmission_file/doubling.py", "Ada L_109_assignsubmission_file/doubling.py"),
+        ("Zo\u00eb/doubling.py", "Zoe\u0308/doubling.py"),
+        ("submission_1/doubling.py", "submission_2/doubling.py"),
+    ],
+    ids=["canvas", "moodle", "folders", "gradescope"],
+)
+def test_a_student_whose_name_or_id_is_written_otherwise_later_stays_one(course, here, first, later):
+    for number, path in enumerate((first, later)):
+        file = here / f"week{number}" / path
+        file.parent.mkdir(parents=True)
+        file.write_text(SOURCE + "# more\n" * number)
+        if path.startswith("submission"):
+            pytest.importorskip("yaml")
+            sid = "0012" if number else ""  # entered in Gradescope after the first download
+            (file.parents[1] / "submission_metadata.yml").write_text(_META.format(file.parent.name, sid))
+    run = ("grade", "run", "--out", "new", "--exercise", "doubling")
+    assert course(*run, "week0").code == 0
+    (student,) = [one["student"] for one in read_csv(here / "new" / "grades.csv")]
+    course("grade", "override", "new", student, "doubling", "--score", "3", "--reason", "oral")
+    assert course(*run, "week1", "--resume").code == 0
+    rows = [(one["student"], one["score"], one["raw_score"]) for one in read_csv(here / "new" / "grades.csv")]
+    assert rows == [(student, "3", "10")]
+
+
 def test_a_file_assigned_to_the_wrong_student_is_taken_back(course, here):
     (here / "roster.csv").write_text("student\nada\nbob\ncy\neve\n")
     again = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")

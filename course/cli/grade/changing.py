@@ -311,13 +311,14 @@ class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=True):
-    """The assigned files, those taken back (``lifted``), and the cases that are left."""
+    """The assigned files, those taken back (``lifted``), the cases that are left, and what is nobody's."""
 
     dry_run: bool
     assigned: tuple[AssignedOne, ...]
     unsettled: tuple[UnsettledOne, ...]
     unjudged: tuple[str, ...] = ()
     lifted: tuple[AssignedOne, ...] = ()
+    unrecognised: tuple[str, ...] = ()
 
 
 #: Whether there are STUDENT, FILE, --lift and --accept-names.
@@ -380,6 +381,8 @@ def assign(
                 return done, assigning.unsettled(results)
 
         done, left = opt.agreed(console, assigned, yes=yes)
+    with open_results(out) as results:
+        unowned = results.unowned()
     broke = unjudged(one for item in done if item.after for one in broken_checks(item.after))
     if not console.json:
         _show_assigned(console, done, lifted, dry_run=dry_run)
@@ -387,6 +390,12 @@ def assign(
         _show_unsettled(
             console, left, out, "would be left to settle" if (done or lifted) and dry_run else "to settle"
         )
+        if unowned:
+            console.line((f"{len(unowned)} of unknown owner:", "bold"))
+            for sentence in unowned[:_SHOWN]:
+                console.line(one_line(sentence), indent=2)
+            given = command("grade", "assign", out, "STUDENT", "FILE")
+            console.note(f"{given}, with FILE as a path, says whose it is; a run with --resume looks again.")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
     unsettled = []
@@ -395,7 +404,14 @@ def assign(
         unsettled.append(filled(UnsettledOne, item, reason=item.found.reason, files=files))
     ones, back = (tuple(map(_assigned_one, items)) for items in (done, lifted))
     return console.answer(
-        GradeAssign(dry_run=dry_run, assigned=ones, unsettled=tuple(unsettled), unjudged=broke, lifted=back)
+        GradeAssign(
+            dry_run=dry_run,
+            assigned=ones,
+            unsettled=tuple(unsettled),
+            unjudged=broke,
+            lifted=back,
+            unrecognised=tuple(unowned),
+        )
     )
 
 

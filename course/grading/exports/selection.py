@@ -168,7 +168,8 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
 
     Raises:
         MissingCapabilityError: a run has still to look at somebody's work; or something could not be graded,
-            and neither a score by hand nor ``zeros`` says that it is worth 0.
+            or is nobody's and may be a missing student's, and neither a score by hand nor ``zeros`` says that
+            it is worth 0.
     """
     left_out = set(selection.written.unmatched)
     asked = [item for item in selection.results.all() if item.exercise in selection.exercises]
@@ -195,6 +196,16 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
             help=f"{command('grade', 'assign', selection.results.folder)} lists them and how to settle"
             " each; --accept-zeros writes the zeros.",
             code="unseen_zeros",
+        )
+    unowned = selection.results.unowned()
+    if unowned and any(item.missing and item.student not in left_out for item in asked):
+        raise MissingCapabilityError(
+            f"{len(unowned)} of unknown owner may be the work of a student who counts as having handed in"
+            f" nothing: {some(unowned, SHOWN)}. Nothing was written.",
+            help="Move each into its student's folder, or away, and give `course grade run` with --resume, or"
+            f" {command('grade', 'assign', selection.results.folder, 'STUDENT', 'FILE')}; --accept-zeros"
+            " passes over them.",
+            code="unknown_owner",
         )
 
 

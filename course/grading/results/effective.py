@@ -35,7 +35,7 @@ from course.grading.gradebook.records import (
 )
 from course.grading.results.late import Policy, lateness, may_change, parse_policy
 from course.grading.results.roster import FOR_TESTS, Person, Roster
-from course.printable import command, one_line, some
+from course.printable import command, one_line, quoted, some
 from course.scoring.verdict import Problem, Verdict, format_points, not_graded
 
 #: State of work that an enrolled student did not hand in.
@@ -348,6 +348,17 @@ class Results:
             result, score, most, self._passes(result, score, most), penalty, late, submitted, witness,
             submitted is None and "canvas-late" in dict(self._witnesses(key)), override,
         )  # fmt: skip
+
+    def unowned(self) -> list[str]:
+        """What lies in the class folder and is nobody's, a sentence each; a file that was assigned is not."""
+        with explained(self.book.path):
+            told = msgspec.json.decode(self.book.meta().get("unrecognised", "[]"), type=list[str])
+        files: dict[tuple[str, str], str] = {}
+        for one in self.book.journal() if told else ():
+            if one.kind == "assign":
+                files[one.student, one.exercise] = counted_in(one.after).file  # "" where it was taken back
+        names = tuple(f"{quoted(Path(file).name)}:" for file in files.values() if file)
+        return [sentence for sentence in told if not sentence.startswith(names)]
 
     def unmatched(self, students: Iterable[str]) -> list[str]:
         """Students without exactly one row of the roster; none if there is no roster."""

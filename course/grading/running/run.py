@@ -237,7 +237,9 @@ def grade_class(
         run.note_times()
         runs.note_unread(book, run.unread)
         summary = run.summary
-        summary.unrecognised = [] if options.only else members.unrecognised
+        if not options.only:
+            summary.unrecognised = members.unrecognised
+            book.set_meta(unrecognised=msgspec.json.encode(members.unrecognised).decode())
         runs.note_without_work(book, run.names)
         results = Results(book, run.roster)
         summary.count(results)

@@ -292,6 +292,64 @@ def test_a_student_whose_name_or_id_is_written_otherwise_later_stays_one(course,
     assert rows == [(student, "3", "10")]
 
 
+def test_of_two_submissions_of_one_student_an_instructor_has_to_choose(course, here):
+    pytest.importorskip("yaml")
+    for name in ("submission_1", "submission_2"):
+        (here / "gs" / name).mkdir(parents=True)
+        (here / "gs" / name / "doubling.py").write_text(f"{SOURCE}# {name}\n")
+        (here / "gs" / name / "submission.json").write_text('{"format_version": 1')
+    told = "".join(_META.format(name, "0012") for name in ("submission_1", "submission_2"))
+    (here / "gs" / "submission_metadata.yml").write_text(told)
+    (here / "roster.csv").write_text("student,canvas_id\n0012,1\n")
+    ran = course("grade", "run", "gs", "--out", "new", "--exercise", "doubling", "--roster", "roster.csv")
+    assert (ran.code, "handed in nothing" in ran.out) == (6, False)
+    (one,) = course("grade", "assign", "new", "--json").json["unsettled"]
+    assert (one["reason"], one["message"]) == (
+        "ambiguous_files",
+        "'0012' has several submissions: 'submission_1', 'submission_2'.",
+    )
+    assert [file["file"] for file in one["files"]] == ["submission_1/doubling.py", "submission_2/doubling.py"]
+    export = (
+        "grade",
+        "export",
+        "new",
+        "--format",
+        "canvas",
+        "--assignment",
+        "doubling=1",
+        "--missing",
+        "zero",
+    )
+    assert course(*export, "--json").json["error"]["code"] == "unseen_zeros"
+    ran = course("grade", "assign", "new", "0012", "submission_2/doubling.py", "--reason", "the later one")
+    assert "0012 doubling: ungradable -> graded, 10 of 10" in ran.out
+    assert course(*export).code == 0
+
+
+def test_a_file_without_an_owner_stops_an_export_until_it_is_someones(course, here):
+    (here / "class" / "eve_doubling.py").write_text(SOURCE)
+    (here / "roster.csv").write_text("student,canvas_id\nada,1\neve,2\n")
+    for name in ("bob", "cy"):
+        shutil.rmtree(here / "class" / name)
+    run = ("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--roster", "roster.csv")
+    assert course(*run).code == 6
+    said = "'eve_doubling.py': is in no student's folder"
+    assert course("grade", "assign", "new", "--json").json["unrecognised"] == [said]
+    assert f"1 of unknown owner:\n  {said}" in course("grade", "assign", "new").out
+    assert "eve_doubling.py" in (here / "new" / "report.html").read_text("utf-8")
+    export = ("grade", "export", "new", "--format", "canvas", "--assignment", "doubling=1")
+    assert course(*export, "--json").json["error"]["code"] == "unknown_owner"
+    assert course(*export, "--accept-zeros").code == 0
+    file = ("class/eve_doubling.py", "--exercise", "doubling", "--reason", "by its name")
+    course("grade", "assign", "new", "eve", *file)
+    assert course(*export).code == 0
+    course("grade", "assign", "new", "eve", "--lift")
+    assert course(*export).code == 4
+    (here / "class" / "eve_doubling.py").unlink()
+    course(*run, "--resume")
+    assert course(*export).code == 0
+
+
 def test_a_file_assigned_to_the_wrong_student_is_taken_back(course, here):
     (here / "roster.csv").write_text("student\nada\nbob\ncy\neve\n")
     again = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")

@@ -245,12 +245,18 @@ def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapa
         by_reason.setdefault(reason, []).append(repr(student))
     listed = " ".join(f"{reason}: {some(names, SHOWN)}." for reason, names in by_reason.items())
     key = f" and {needs}" if needs else ""
+    joined = any(reason.startswith("In one row") for reason in by_reason)
+    twice = (
+        "Who had another name in an earlier download is one student in a new run (another --out). "
+        if joined
+        else ""
+    )
     about = "1 student" if len(why) == 1 else f"{len(why)} students"
     return MissingCapabilityError(
         f"{results.roster.called} has no usable row for {about}. {listed} "
         f"{results.roster.compared(why, results.downloads)} Nothing was written.",
         help="Correct it, or give a CSV file of your own with the columns student (the name in the gradebook)"
-        f"{key}. --partial leaves these students out.",
+        f"{key}. {twice}--partial leaves these students out.",
         code="unmatched_students",
     )
 

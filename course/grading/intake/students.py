@@ -185,9 +185,7 @@ def _unclear(
         for one in survey(place, set(), every)
     ]
     mine = _meant(named, every)
-    problem = Problem(
-        "ambiguous_files", f"{student.unclear}.", "`course grade assign` takes the one that counts."
-    )
+    problem = Problem("ambiguous_files", f"{student.unclear}.", "The instructor chooses the one that counts.")
     for exercise in every:
         found = found_for(exercise, mine[exercise.id], asked=())
         if exercise not in exercises:

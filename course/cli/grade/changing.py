@@ -143,7 +143,7 @@ def late(
                 joined = merged(Results(book), people, lasting=True)
                 book.set_meta(roster=joined.roster.dump())
                 dropped = joined.dropped
-            known = _times(Results(book), listed, exercise)
+            known, unused = _times(Results(book), listed, exercise)
             if known:
                 book.add_times(known, replace=True)
         results = Results(book)
@@ -151,12 +151,24 @@ def late(
         late_ones = [item for item in handed_in if item.late is not None or item.flagged_late]
         found = [filled(LateOne, one, submitted_at=utc(one.submitted_at) or None) for one in late_ones]
         unknown_time = sum(item.submitted_at is None for item in handed_in) if results.policy else 0
-        unknown = _unknown(results, known)
+        unknown = unused + _unknown(results, known)
         unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
+        short = [one_line(item.student) for item in late_ones if results.hangs_on_an_extension(item)]
+        extended = _extended(results, known, listed) if isinstance(listed, Worksheet) else []
     if unsure:
         console.warn(
             f"{times} says no time zone. If the clock changed near the deadline, an hour may cost or spare"
             f" points of {some(unsure, _SHOWN)}: give their times in a list, with the distance from UTC."
+        )
+    if short:
+        console.warn(
+            f"A day of an extension has 24 hours. If the clock changed within it, an hour may cost points of"
+            f" {some(short, _SHOWN)}: with `days = 1.042`, say, a day is an hour longer."
+        )
+    if extended:
+        console.warn(
+            f"By {times}, Moodle gave {some(extended, _SHOWN)} more time. That does not count here: write it"
+            " into the policy ([[extension]]) or the roster (extension_days)."
         )
     if not console.json:
         _show_late(console, results, found, unknown_time, unknown)
@@ -181,10 +193,11 @@ def late(
 
 def _times(
     results: Results, listed: list[SubmittedAt] | Worksheet, exercise: str | None
-) -> list[SubmittedAt]:
-    """The times in a list; those of a worksheet need an exercise and its deadline."""
+) -> tuple[list[SubmittedAt], list[str]]:
+    """The times in a list; those of a worksheet need an exercise and its deadline, and some of its rows may
+    fit no student."""
     if not isinstance(listed, Worksheet):
-        return [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed]
+        return [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed], []
     ids = [item.id for item in results.exercises() if item.id != "quiz"]
     name = exercise or (ids[0] if len(ids) == 1 else "")
     if name not in ids:
@@ -198,7 +211,9 @@ def _times(
     people = read_roster(listed.path)
     found = people.match(results.students(), results.downloads)[0]
     students = {person.moodle_key: student for student, person in found.items()}
-    return worksheet_times(listed, students, name, due.tzinfo)
+    unused = [one.student for one in people.people if one.moodle_key in listed.times.keys() - students.keys()]
+    told = [f"one student for the row of {student} in {listed.path}" for student in unused]
+    return worksheet_times(listed, students, name, due.tzinfo), told
 
 
 def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
@@ -206,6 +221,16 @@ def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
     exercises, listed = {time.exercise for time in known}, {time.student for time in known}
     mine = (one for one in results.all() if one.student in listed and one.exercise in exercises)
     return [one_line(item.student) for item in mine if results.hangs_on_the_clock(item)]
+
+
+def _extended(results: Results, known: list[SubmittedAt], sheet: Worksheet) -> list[str]:
+    """Who is late, and has more time by a worksheet."""
+    people = read_roster(sheet.path)
+    found = people.match((time.student for time in known), results.downloads)[0]
+    exercises = {time.exercise for time in known}
+    mine = {student for student, person in found.items() if person.moodle_key in sheet.extended}
+    late_ones = (one for one in results.all() if one.late is not None and one.exercise in exercises)
+    return [one_line(one.student) for one in late_ones if one.student in mine]
 
 
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:
@@ -286,13 +311,19 @@ class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=True):
-    """The assigned files, and the cases that are left."""
+    """The assigned files, those taken back (``lifted``), the cases that are left, and what is nobody's."""
 
     dry_run: bool
     assigned: tuple[AssignedOne, ...]
     unsettled: tuple[UnsettledOne, ...]
     unjudged: tuple[str, ...] = ()
     elsewhere: tuple[str, ...] = ()
+    lifted: tuple[AssignedOne, ...] = ()
+    unrecognised: tuple[str, ...] = ()
+
+
+#: Whether there are STUDENT, FILE, --lift and --accept-names.
+_WAYS = {(False,) * 4, (True, True, False, False), (True, False, True, False), (False, False, False, True)}
 
 
 def assign(
@@ -305,6 +336,7 @@ def assign(
         str | None, option("--exercise ID", "Needed if it is not clear.", exercise_ids)
     ] = None,
     accept_names: Annotated[bool, option("--accept-names", "Accept every proposed match.")] = False,
+    lift: Annotated[bool, option("--lift", "Take the student's assigned file back.")] = False,
     reason: Annotated[str, option("--reason TEXT", "Kept with each result.")] = "",
     dry_run: Annotated[bool, option("--dry-run", "Grade and show, but store nothing.")] = False,
     jobs: opt.Jobs = 1,
@@ -316,14 +348,19 @@ def assign(
     Without STUDENT it lists the students without a submission, the files there are for each, the functions
     that each file defines, and the proposed match. No file is renamed; who decided, when and why is kept.
     """
-    if (student is None) != (file is None) or (student is not None and accept_names):
-        problem = "Give STUDENT and FILE, or --accept-names, or neither for a list."
+    if (student is not None, file is not None, lift, accept_names) not in _WAYS:
+        problem = "Give STUDENT and FILE, STUDENT and --lift, --accept-names, or none of them for a list."
         raise UsageError(problem, help="See `course grade assign -h`.")
     console = current()
     done: list[Assigned] = []
+    lifted: list[Assigned] = []
     waiting = 0
     elsewhere: tuple[str, ...] = ()
-    if student is None and not accept_names:
+    if student is not None and lift:
+        with previewed(out) if dry_run else open_results(out, writing=True) as results:
+            lifted = [assigning.lift(results, student, exercise, reason)]
+            left = assigning.unsettled(Results(results.book))
+    elif student is None and not accept_names:
         with open_results(out) as results:
             left = assigning.unsettled(results)
             waiting = len({item.student for item in results.all() if item.waiting})
@@ -351,19 +388,29 @@ def assign(
                 return done, assigning.unsettled(results)
 
         done, left = opt.agreed(console, assigned, yes=yes)
-    broke = unjudged(one for item in done for one in broken_checks(item.after))
+    with open_results(out) as results:
+        unowned = results.unowned()
+    broke = unjudged(one for item in done if item.after for one in broken_checks(item.after))
     if not console.json:
-        _show_assigned(console, done, dry_run=dry_run)
+        _show_assigned(console, done, lifted, dry_run=dry_run)
         show_unjudged(console, broke)
-        _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
+        _show_unsettled(
+            console, left, out, "would be left to settle" if (done or lifted) and dry_run else "to settle"
+        )
         show_elsewhere(console, elsewhere, out)
+        if unowned:
+            console.line((f"{len(unowned)} of unknown owner:", "bold"))
+            for sentence in unowned[:_SHOWN]:
+                console.line(one_line(sentence), indent=2)
+            given = command("grade", "assign", out, "STUDENT", "FILE")
+            console.note(f"{given}, with FILE as a path, says whose it is; a run with --resume looks again.")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
     unsettled = []
     for item in left:
         files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
         unsettled.append(filled(UnsettledOne, item, reason=item.found.reason, files=files))
-    ones = tuple(map(_assigned_one, done))
+    ones, back = (tuple(map(_assigned_one, items)) for items in (done, lifted))
     return console.answer(
         GradeAssign(
             dry_run=dry_run,
@@ -371,28 +418,33 @@ def assign(
             unsettled=tuple(unsettled),
             unjudged=broke,
             elsewhere=elsewhere,
+            lifted=back,
+            unrecognised=tuple(unowned),
         )
     )
 
 
 def _assigned_one(item: Assigned) -> AssignedOne:
     one, before, after = item.assignment, item.before, item.after
-    scores = {"score_before": before.score if before else None, "score_after": after.score}
-    was = before.verdict.state if before else "missing"
-    states = {"state_before": was, "state_after": after.verdict.state}
+    was, now = (counts.verdict.state if counts else "missing" for counts in (before, after))
+    scores = {"score_before": before.score if before else None, "score_after": after.score if after else None}
+    states = {"state_before": was, "state_after": now}
     return filled(AssignedOne, one, file=one.name, **scores, **states)
 
 
-def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:
-    for item in done:
+def _show_assigned(console: Console, done: list[Assigned], lifted: list[Assigned], *, dry_run: bool) -> None:
+    for item in (*done, *lifted):
         one, after = _assigned_one(item), item.after
-        scored = f"{opt.points(after.score)} of {format_points(after.max_score)}"
-        if after.override is not None:
-            scored += f" by hand ({checks_gave(after)})"
-        words = f"{one.state_before} -> {one.state_after}, {scored}; from {quoted(one.file)}"
+        most = after.max_score if after and after.score is not None else None
+        words = f"{one.state_before} -> {one.state_after}, {opt.points(one.score_after, most)}"
+        if after is not None and after.override is not None:
+            words += f" by hand ({checks_gave(after)})"
+        words += f"; {'without' if item in lifted else 'from'} {quoted(one.file)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
+    if lifted:
+        console.line((f"1 {'would be taken' if dry_run else 'taken'} back.", "bold"))
 
 
 def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: str) -> None:

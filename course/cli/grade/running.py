@@ -58,6 +58,7 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
     elsewhere: tuple[str, ...] = ()
     moved: tuple[ScoreChange, ...] = ()
     dropped: tuple[str, ...] = ()
+    untimed: tuple[str, ...] = ()
 
 
 def run(
@@ -174,6 +175,7 @@ def _show_people(console: Console, summary: Summary) -> None:
         (summary.unrecognised, "unknown owner"),
         (summary.stay, "graded before, and kept as they were"),
         (summary.lower, "lower than before, by what was handed in now"),
+        (summary.untimed, "handed in again, and on time until `course grade late --times` says when"),
     ):
         if listed:
             console.line((f"{len(listed)} {words}:", "bold"))

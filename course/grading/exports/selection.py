@@ -168,7 +168,8 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
 
     Raises:
         MissingCapabilityError: a run has still to look at somebody's work; or something could not be graded,
-            and neither a score by hand nor ``zeros`` says that it is worth 0.
+            or is nobody's and may be a missing student's, and neither a score by hand nor ``zeros`` says that
+            it is worth 0.
     """
     left_out = set(selection.written.unmatched)
     asked = [item for item in selection.results.all() if item.exercise in selection.exercises]
@@ -195,6 +196,16 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
             help=f"{command('grade', 'assign', selection.results.folder)} lists them and how to settle"
             " each; --accept-zeros writes the zeros.",
             code="unseen_zeros",
+        )
+    unowned = selection.results.unowned()
+    if unowned and any(item.missing and item.student not in left_out for item in asked):
+        raise MissingCapabilityError(
+            f"{len(unowned)} of unknown owner may be the work of a student who counts as having handed in"
+            f" nothing: {some(unowned, SHOWN)}. Nothing was written.",
+            help="Move each into its student's folder, or away, and give `course grade run` with --resume, or"
+            f" {command('grade', 'assign', selection.results.folder, 'STUDENT', 'FILE')}; --accept-zeros"
+            " passes over them.",
+            code="unknown_owner",
         )
 
 
@@ -234,12 +245,18 @@ def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapa
         by_reason.setdefault(reason, []).append(repr(student))
     listed = " ".join(f"{reason}: {some(names, SHOWN)}." for reason, names in by_reason.items())
     key = f" and {needs}" if needs else ""
+    joined = any(reason.startswith("In one row") for reason in by_reason)
+    twice = (
+        "Who had another name in an earlier download is one student in a new run (another --out). "
+        if joined
+        else ""
+    )
     about = "1 student" if len(why) == 1 else f"{len(why)} students"
     return MissingCapabilityError(
         f"{results.roster.called} has no usable row for {about}. {listed} "
         f"{results.roster.compared(why, results.downloads)} Nothing was written.",
         help="Correct it, or give a CSV file of your own with the columns student (the name in the gradebook)"
-        f"{key}. --partial leaves these students out.",
+        f"{key}. {twice}--partial leaves these students out.",
         code="unmatched_students",
     )
 

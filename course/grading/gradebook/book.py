@@ -182,6 +182,16 @@ class Gradebook:
                 [msgspec.structs.astuple(time_) for time_ in times],
             )
 
+    def tie_times(self, student: str, key: Key) -> None:
+        """Tie the times of any work, told under this name, to the work of the key."""
+        digest = "row_digest('times', student, exercise, ?1, source, at)"
+        with self._transaction():
+            self._db.execute(
+                f"UPDATE OR REPLACE times SET submission_sha256 = ?1, row_sha256 = {digest}"
+                " WHERE student = ?2 AND exercise = ?3 AND submission_sha256 = ''",
+                (key.submission_sha256, student, key.exercise),
+            )
+
     def times(self) -> Iterator[SubmittedAt]:
         """All known times of submission."""
         with explained(self.path):
@@ -204,6 +214,15 @@ class Gradebook:
     def _keep(self, sha256: str, files: Mapping[str, bytes]) -> None:
         packed = _masked(zlib.compress(msgspec.msgpack.encode(dict(files)), 1), os.urandom(_SALT))
         self._db.execute(row_into("submissions", "INSERT OR IGNORE"), (sha256, packed))
+
+    def take_back(self, key: Key, verdict: Verdict) -> None:
+        """Let no result count for a student and exercise any more; all are kept.
+
+        Args:
+            key: of the result that counts.
+            verdict: that nothing was handed in, for a version that knows no such rows.
+        """
+        self.add(Result(replace(key, submission_sha256="", grader_version=""), verdict))
 
     def restore(self, sha256: str, files: Mapping[str, bytes]) -> None:
         """Store the submission of a result, if it was lost."""
@@ -253,7 +272,7 @@ class Gradebook:
         """The newest result of each student and exercise, ordered by both."""
         where, arguments = _about(student, exercise)
         newest = f"number IN (SELECT max(number) FROM results{where} GROUP BY student, exercise)"
-        yield from self._results(f" WHERE {newest}", arguments)
+        yield from self._results(f" WHERE {newest} AND {_NOT_TAKEN_BACK}", arguments)
 
     def verify(self) -> None:
         """Look at every page, every decision, and all that opening leaves unread because it is large.
@@ -275,7 +294,8 @@ class Gradebook:
 
     def history(self, student: str, exercise: str) -> list[Result]:
         """Every result of a student and exercise, oldest first."""
-        return list(self._results(*_about(student, exercise)))
+        where, arguments = _about(student, exercise)
+        return list(self._results(f"{where} AND {_NOT_TAKEN_BACK}", arguments))
 
     def _results(self, where: str, arguments: tuple[str, ...]) -> Iterator[Result]:
         query = (
@@ -292,13 +312,21 @@ class Gradebook:
 
     def student_ids(self) -> list[str]:
         """All students with a result, by name."""
-        return [student for (student,) in self._rows("SELECT DISTINCT student FROM results ORDER BY 1")]
+        newest = "SELECT max(number) FROM results GROUP BY student, exercise"
+        where = f"number IN ({newest}) AND {_NOT_TAKEN_BACK}"
+        query = f"SELECT DISTINCT student FROM results WHERE {where} ORDER BY 1"
+        return [student for (student,) in self._rows(query)]
 
     def exercise_ids(self, *, handed_in: bool = False) -> list[str]:
         """All exercises with a result, by name; or those alone of which there is a submission."""
         query = "SELECT DISTINCT exercise FROM results WHERE submission_sha256 IS NOT ? ORDER BY 1"
         nothing = hashlib.sha256().hexdigest() if handed_in else None
         return [exercise for (exercise,) in self._rows(query, nothing)]
+
+    def without_work(self) -> list[str]:
+        """The students whose folder held nothing to grade."""
+        with explained(self.path):
+            return msgspec.json.decode(self.meta().get("without_work", "[]"), type=list[str])
 
     def looked(self) -> dict[str, Looked] | None:
         """By exercise, whose work was looked at; None in a gradebook of a version that did not note it."""
@@ -446,6 +474,10 @@ class Gradebook:
                 self._db.execute("PRAGMA wal_checkpoint(PASSIVE)")
                 self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
         self.write_s += time.perf_counter() - start
+
+
+#: The newest row of a student and exercise may say that no result counts: it names no submission.
+_NOT_TAKEN_BACK = "submission_sha256 != ''"
 
 
 class _State(msgspec.Struct):

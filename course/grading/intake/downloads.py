@@ -21,7 +21,7 @@ import re
 import tarfile
 import unicodedata
 from collections.abc import Callable, Collection, Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -170,6 +170,8 @@ class Student:
         submitted_at: seconds since 1970, UTC, where the platform says so.
         flagged_late: the platform says that it was late, but not by how much.
         typed: files with text that was typed into the platform.
+        several: where it is not clear which of several places counts: each of them, with its name.
+        unclear: why that is, as a sentence.
     """
 
     name: str
@@ -178,6 +180,12 @@ class Student:
     submitted_at: float | None = None
     flagged_late: bool = False
     typed: tuple[str, ...] = ()
+    several: tuple[tuple[str, Place], ...] = ()
+    unclear: str = ""
+
+    @property
+    def places(self) -> list[Place]:
+        return [place for _, place in self.several] or [self.place]
 
 
 @dataclass
@@ -307,7 +315,12 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
             shared.setdefault(student, []).append((match["file"], folder / raw))
     for student, identity in people.items():
         if student in owned and student in shared:
-            found.unrecognised.append(f"{quoted(student)}: both a folder and files of their own")
+            both = (
+                (_text(owned[student].name), Place(owned[student])),
+                ("files", Place(folder, tuple(shared[student]))),
+            )
+            told = f"{quoted(student)} has both a folder and files of their own"
+            found.students.append(Student(student, both[0][1], identity, several=both, unclear=told))
             continue
         place = Place(owned[student]) if student in owned else Place(folder, tuple(shared.get(student, ())))
         words = tuple(typed.get(student, ()))
@@ -317,8 +330,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
 
 def _canvas(folder: Path, names: list[str]) -> ClassList:
     found = ClassList("canvas")
-    files: dict[str, list[tuple[str, Path]]] = {}
-    spelled: dict[str, set[str]] = {}
+    files: dict[str, dict[str, list[tuple[str, Path]]]] = {}
     typed: dict[str, list[str]] = {}
     late: set[str] = set()
     for raw in names:
@@ -327,24 +339,24 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
             found.unrecognised.append(f"{quoted(raw)}: not a name in Canvas' form")
             continue
         key = match["key"] or match["anon_key"]
-        mine = files.setdefault(key, [])
+        name = _text(match["name"] or match["anon"] or "")
+        mine = files.setdefault(key, {}).setdefault(name, [])
         if match["typed"]:  # text or an address typed into Canvas is no file of the student's
             typed.setdefault(key, []).append(_text(raw))
         else:
             mine.append((match["file"], folder / raw))
-        spelled.setdefault(key, set()).add(_text(match["name"] or match["anon"] or ""))
         if match["late"] or match["anon_late"]:
             late.add(key)
-    for key, items in files.items():
-        name, *more = sorted(spelled[key])
-        if more:
-            both = " and ".join(map(quoted, (name, *more)))
-            said = f"user {key} of Canvas is called {both}: whose files these are is unclear"
-            found.unrecognised.append(said)
-            continue
-        who, place = PlatformIdentity("canvas", key, name), Place(folder, tuple(items))
-        words = tuple(typed.get(key, ()))
-        found.students.append(Student(f"{name}_{key}", place, who, flagged_late=key in late, typed=words))
+    for key, by_name in files.items():
+        several = tuple((name, Place(folder, tuple(by_name[name]))) for name in sorted(by_name))
+        (name, place), *more = several
+        both = " and ".join(quoted(name) for name, _ in several)
+        told = f"User {key} of Canvas is called {both}: which files count is unclear"
+        student = Student(
+            f"{name}_{key}", place, PlatformIdentity("canvas", key, name), flagged_late=key in late,
+            typed=tuple(typed.get(key, ())), several=several if more else (), unclear=told if more else "",
+        )  # fmt: skip
+        found.students.append(student)
     return found
 
 
@@ -368,11 +380,13 @@ def _gradescope(folder: Path, names: list[str]) -> ClassList:
             entry = Student(student, Place(folder / name), who, _created_at(about))
             claims.setdefault(student, []).append((name, entry))
     for student, entries in claims.items():
+        entry = entries[0][1]
         if len(entries) > 1:
             listed = some([quoted(name) for name, _ in entries], _SHOWN)
-            found.unrecognised.append(f"{quoted(student)} has several submissions: {listed}")
-        else:
-            found.students.append(entries[0][1])
+            several = tuple((name, one.place) for name, one in entries)
+            told = f"{quoted(student)} has several submissions: {listed}"
+            entry = replace(entry, submitted_at=None, several=several, unclear=told)
+        found.students.append(entry)
     return found
 
 

@@ -132,6 +132,9 @@ def _entries(
 ) -> Iterator[Entry]:
     name, place = student.name, student.place
     every = (*exercises, *(others or ()))
+    if student.several:
+        yield from _unclear(student, exercises, every, required=required)
+        return
     try:
         if place.files is None and place.root.is_symlink():
             raise RefusedError("symlink", "The student's folder is a link.", "Hand in the folder itself.")
@@ -170,6 +173,31 @@ def _entries(
     for exercise in others or ():
         if found_for(exercise, mine[exercise.id], asked=()):
             yield Entry(name, exercise, unread=True)
+
+
+def _unclear(
+    student: Student, exercises: Sequence[Exercise], every: Sequence[Exercise], *, required: bool
+) -> Iterator[Entry]:
+    """The entries of a student with several places, of which an instructor has to say which counts."""
+    named = [
+        msgspec.structs.replace(one, name=f"{one_line(name)}/{one.name}")
+        for name, place in student.several
+        if place.files is not None or not place.root.is_symlink()
+        for one in survey(place, set(), every)
+    ]
+    mine = _meant(named, every)
+    problem = Problem("ambiguous_files", f"{student.unclear}.", "The instructor chooses the one that counts.")
+    for exercise in every:
+        found = found_for(exercise, mine[exercise.id], asked=())
+        if exercise not in exercises:
+            if found:
+                yield Entry(student.name, exercise, unread=True)
+        elif found or (required and not any(mine.values())):
+            files = tuple(msgspec.structs.replace(one, proposed=False) for one in found)
+            listed = Found(problem.code, files) if files else None
+            yield Entry(student.name, exercise, problem=problem, found=listed)
+        else:
+            yield Entry(student.name, exercise)
 
 
 def _found(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork | RefusedError | None:
@@ -494,20 +522,20 @@ def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | Non
     """
     found: list[tuple[Any, Path]] = []
     unread: RefusedError | None = None
-    place = student.place
     reader.turn_to(student)
-    with contextlib.suppress(OSError):
-        if place.files is None and place.root.is_symlink():
-            return [], None
-        place = place.unwrapped(())
-        for path in (*place.archives(), *place.find(MANIFEST, ".")):
-            try:
-                packed = path.suffix.lower() == ".zip"
-                loose = b"" if packed else _read_regular(path, place.shown(path), MAX_FILE)
-                record = reader.quiz_in(path, loose)
-                found += [(record, path)] if record else []
-            except RefusedError as refused:
-                unread = refused if alone or reader.spent else unread
+    for one in student.places:
+        with contextlib.suppress(OSError):
+            if one.files is None and one.root.is_symlink():
+                continue
+            place = one.unwrapped(())
+            for path in (*place.archives(), *place.find(MANIFEST, ".")):
+                try:
+                    packed = path.suffix.lower() == ".zip"
+                    loose = b"" if packed else _read_regular(path, place.shown(path), MAX_FILE)
+                    record = reader.quiz_in(path, loose)
+                    found += [(record, path)] if record else []
+                except RefusedError as refused:
+                    unread = refused if alone or reader.spent else unread
     # A damaged record takes nothing from one that can be read.
     found = [one for one in found if not isinstance(one[0], str)] or found
     if unread and not found:

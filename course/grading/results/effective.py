@@ -36,7 +36,7 @@ from course.grading.gradebook.records import (
 )
 from course.grading.results.late import Policy, lateness, may_change, parse_policy
 from course.grading.results.roster import FOR_TESTS, Person, Roster
-from course.printable import command, one_line, some
+from course.printable import command, one_line, quoted, some
 from course.scoring.verdict import Problem, Verdict, format_points, not_graded
 
 #: State of work that an enrolled student did not hand in.
@@ -45,7 +45,6 @@ MISSING = "missing"
 NOT_YET = "not_graded_yet"
 _NOTHING = {
     MISSING: Problem("not_submitted", "Nothing was handed in."),
-    "ungradable": Problem("not_submitted", "Nothing was handed in.", "The score was set by the instructor."),
     NOT_YET: Problem(
         "not_graded_yet",
         "No run has looked at all of this student's work yet.",
@@ -153,7 +152,7 @@ class Results:
         with explained(book.path):
             self.seed = msgspec.json.decode(meta.get("seed", "0"), type=int)
             self.roster = roster or (Roster.load(meta["roster"]) if "roster" in meta else None)
-            self._without_work = set(msgspec.json.decode(meta.get("without_work", "[]"), type=list[str]))
+        self._without_work = set(book.without_work())
         self.waiting = book.waiting()
         self.looked = book.looked()
         self.downloads = book.students()
@@ -180,6 +179,14 @@ class Results:
         for time in times:
             place = self._times.setdefault((self._owner(time.student), time.exercise), [])
             place.append((time.submission_sha256, time.source, time.at))
+
+    def tie_times(self, key: Key) -> None:
+        """Keep the times of a list with the work that they were given for: later work has none of them."""
+        mine = self._times.get((key.student, key.exercise), [])
+        if any(not sha256 for sha256, _, _ in mine):
+            for name in (key.student, *(name for name, at in self._arrived.items() if at == key.student)):
+                self.book.tie_times(name, key)
+            mine[:] = [(sha256 or key.submission_sha256, who, at) for sha256, who, at in mine]
 
     def _owner(self, name: str) -> str:
         """The student's name: what was decided under the roster's, before a folder came, is the folder's."""
@@ -325,9 +332,8 @@ class Results:
             may_wait = waits and about in self._exercises
             if (student, about) not in done and (by_hand or may_wait or about in asked):
                 done.add((student, about))
-                known = not waits and self.has_looked(student, about)
-                state = "ungradable" if by_hand else MISSING if known else NOT_YET
-                yield self.of(self._nothing(student, about, state))
+                known = by_hand or (not waits and self.has_looked(student, about))
+                yield self.of(self.nothing(student, about, MISSING if known else NOT_YET))
 
     def of(self, result: Result) -> Effective:
         """The effective result for a grading."""
@@ -353,6 +359,17 @@ class Results:
             submitted is None and "canvas-late" in dict(self._witnesses(key)), override,
         )  # fmt: skip
 
+    def unowned(self) -> list[str]:
+        """What lies in the class folder and is nobody's, a sentence each; a file that was assigned is not."""
+        with explained(self.book.path):
+            told = msgspec.json.decode(self.book.meta().get("unrecognised", "[]"), type=list[str])
+        files: dict[tuple[str, str], str] = {}
+        for one in self.book.journal() if told else ():
+            if one.kind == "assign":
+                files[one.student, one.exercise] = counted_in(one.after).file  # "" where it was taken back
+        names = tuple(f"{quoted(Path(file).name)}:" for file in files.values() if file)
+        return [sentence for sentence in told if not sentence.startswith(names)]
+
     def unmatched(self, students: Iterable[str]) -> list[str]:
         """Students without exactly one row of the roster; none if there is no roster."""
         why = self.roster.match(students, self.downloads)[1] if self.roster else {}
@@ -374,9 +391,9 @@ class Results:
         known = self._times.get((key.student, key.exercise), ())
         return [(who, at) for sha256, who, at in known if sha256 in {"", key.submission_sha256}]
 
-    def _due(self, key: Key) -> float | None:
-        person = self.person(key.student)
-        names = (key.student, person.student) if person else (key.student,)
+    def _due(self, key: Key, *, extended: bool = True) -> float | None:
+        person = self.person(key.student) if extended else None
+        names = (key.student, *([person.student] if person else [])) if extended else ()
         granted = person.extension_days or 0.0 if person else 0.0
         return self.policy.due(key.exercise, names, granted) if self.policy else None
 
@@ -386,9 +403,17 @@ class Results:
 
     def hangs_on_the_clock(self, one: Effective) -> bool:
         """Whether a time without a zone decides a penalty: clocks may have changed since the deadline."""
+        return self._hangs(one, self._due(one.result.key), one.submitted_at)
+
+    def hangs_on_an_extension(self, one: Effective) -> bool:
+        """Whether an hour decides a penalty, and clocks may have changed while an extension ran."""
+        first, last = (self._due(one.result.key, extended=extended) for extended in (False, True))
+        return first != last and self._hangs(one, first, last)
+
+    def _hangs(self, one: Effective, first: float | None, last: float | None) -> bool:
+        """Whether an hour decides a penalty, and clocks may have changed between two times."""
         key, at = one.result.key, one.submitted_at
-        due = self._due(key)
-        if self.policy is None or at is None or due is None or not may_change(due, at):
+        if self.policy is None or at is None or first is None or last is None or not may_change(first, last):
             return False
         score, hour = one.verdict.score, 3600.0
         hours = (self._late(key, at + shift) for shift in (-hour, 0.0, hour))
@@ -403,7 +428,7 @@ class Results:
         # The tolerance is rounding of sums of points, not mercy.
         return noted is not None and score >= noted.pass_share * most - 1e-9
 
-    def _nothing(self, student: str, exercise: str, state: str) -> Result:
+    def nothing(self, student: str, exercise: str, state: str) -> Result:
         """Stands in for a grading where nothing was handed in."""
         noted = self._exercises.get(exercise)
         problem = _NOTHING[state]
@@ -463,13 +488,22 @@ def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[list[ScoreChan
 
 
 @contextlib.contextmanager
-def replacing(book: Gradebook, view: Results, key: Key) -> Iterator[None]:
-    """Note in the journal if the result that this block puts in the place of another changes what counts."""
+def replacing(book: Gradebook, view: Results, key: Key, untimed: list[str]) -> Iterator[None]:
+    """Note in the journal if the result that this block puts in the place of another changes what counts.
+
+    Args:
+        untimed: gets the student and exercise if the work that counts now has no trusted time any more.
+    """
     before = next(view.all(key.student, key.exercise), None)
+    was = before.result.key if before is not None and before.result.number else key
+    if was.submission_sha256 != key.submission_sha256:
+        view.tie_times(was)
     yield
     after = next(view.all(key.student, key.exercise), None)
     if before is None or after is None or before.waiting:
         return  # it is the first
+    if before.submitted_at is not None and after.submitted_at is None and view.policy is not None:
+        untimed.append(f"{key.student} {key.exercise}")
     if (before.verdict.state, before.score) != (after.verdict.state, after.score):
         told = counted(before), counted(after)
         book.note(Decision("", "", "resume", key.student, key.exercise, "another submission", *told))

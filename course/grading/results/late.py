@@ -201,6 +201,7 @@ def in_days(seconds: float) -> str:
 
 _COLUMNS = {"student", "exercise", "submitted_at"}
 _IDENTIFIER, _SUBMITTED = "Identifier", "Last modified (submission)"
+_YEAR = re.compile(r"\b20[0-9]{2}\b")
 #: The first three letters of the months, in English and in German.
 _MONTHS = [
     ("jan",), ("feb",), ("mar", "mär"), ("apr",), ("may", "mai"), ("jun",), ("jul",), ("aug",), ("sep",),
@@ -215,10 +216,12 @@ _WORDS = re.compile(
 
 @dataclass(frozen=True)
 class Worksheet:
-    """Moodle's worksheet: when each participant's number last changed the submission, in words."""
+    """Moodle's worksheet: when each participant's number last changed the submission, in words; and whose
+    row says that Moodle gave more time."""
 
     path: Path
     times: dict[str, str]
+    extended: frozenset[str]
 
 
 def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
@@ -241,13 +244,15 @@ def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
         raise _wrong_times(path, f"line {reader.line_num + 1}: {error}") from None
     lines: dict[tuple[str, ...], int] = {}
     if {_IDENTIFIER, _SUBMITTED} <= headings:
-        times = {}
+        times, extended = {}, set[str]()
         for line, row in rows:
             key, words = moodle_key(row[_IDENTIFIER] or ""), (row[_SUBMITTED] or "").strip()
             if key and words.strip("-"):
                 _once(path, lines, line, key)
                 times[key] = words
-        return Worksheet(path, times)
+                # In any language: of what stands there, an extension alone has a date.
+                extended |= {key} if _YEAR.search(row.get("Status") or "") else set()
+        return Worksheet(path, times, frozenset(extended))
     if not headings >= _COLUMNS:
         raise _wrong_times(path, "its first row lacks student, exercise or submitted_at")
     found = []

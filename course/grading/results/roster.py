@@ -184,7 +184,9 @@ class Roster:
             claims.setdefault(person.student, []).append(student)
         for claimants in claims.values():
             if len(claimants) > 1:  # two folders, one row: we must not guess which of them counts
-                for student in claimants:
+                numbered = [one for one in claimants if not _by_name(one, downloads.get(one), found[one])]
+                keeps = numbered[0] if len(numbered) == 1 else None  # a number is surer than a name
+                for student in (one for one in claimants if one != keeps):
                     others = ", ".join(repr(other) for other in claimants if other != student)
                     unmatched[student] = f"In one row with {others}"
                     del found[student]
@@ -217,6 +219,12 @@ class Roster:
     @classmethod
     def load(cls, text: str) -> Roster:
         return cls(msgspec.json.decode(text, type=tuple[Person, ...]))
+
+
+def _by_name(student: str, download: PlatformIdentity | None, person: Person) -> bool:
+    """Whether nothing but a name says that a row is about this student of Moodle's."""
+    moodle = download is not None and download.source == "moodle" and download.key != person.moodle_key
+    return moodle and _key("student", student) != _key("student", person.student)
 
 
 def _keys(download: PlatformIdentity) -> list[tuple[str, str]]:

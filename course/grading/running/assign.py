@@ -6,7 +6,7 @@ given; ``course grade run --resume`` leaves assigned files alone.
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import msgspec
@@ -17,9 +17,17 @@ from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Candidate, Entry, Found, submission_from
-from course.grading.results.effective import Effective, Results, counted, given_reason, must_have, no_exercise
+from course.grading.results.effective import (
+    MISSING,
+    Effective,
+    Results,
+    counted,
+    given_reason,
+    must_have,
+    no_exercise,
+)
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.run import GradeAll
+from course.grading.running.run import GradeAll, as_known, assigned_in
 from course.grading.running.snapshot import fresh, frozen, kept
 from course.printable import command, quoted
 from course.scoring.judging.submission import Terms
@@ -54,11 +62,11 @@ class Assignment:
 
 @dataclass(frozen=True)
 class Assigned:
-    """An assignment, with the scores before and after."""
+    """An assignment made or taken back, with what counted before and counts now."""
 
     assignment: Assignment
     before: Effective | None
-    after: Effective
+    after: Effective | None
 
 
 def unsettled(results: Results) -> list[Unsettled]:
@@ -142,10 +150,10 @@ def _lying(results: Results, student: str, file: str) -> tuple[Path, str] | None
     """A file by its name in the student's folder, or its name on the platform; None if it is not there."""
     options = results.book.run_options()
     try:
-        students = class_list(Path(options.get("folder", "")), options.get("layout", "auto")).students
+        found = class_list(Path(options.get("folder", "")), options.get("layout", "auto"))
     except CourseError:
         return None
-    place = next((one.place for one in students if one.name == student), None)
+    place = next((one.place for one in as_known(found, results.book) if one.name == student), None)
     if place is None:
         return None
     if place.files is None:
@@ -223,3 +231,43 @@ def _recorded(results: Results, one: Assignment, graded: Graded, version: str, r
     book.note(Decision("", "", "assign", one.student, one.exercise, reason, *told))
     book.set_found(one.student, one.exercise, None)
     return Assigned(one, before, after)
+
+
+def lift(results: Results, student: str, exercise: str | None, reason: str) -> Assigned:
+    """Take back the file that was assigned to a student: what counted before counts again, or nothing.
+
+    Args:
+        results: over a gradebook opened for writing.
+        exercise: None where the student has one assigned file.
+
+    Raises:
+        NotFoundError: no such student, or no assigned file counts.
+        UsageError: the exercise is not clear.
+    """
+    book, student = results.book, results.called(student)
+    must_have(results, student)
+    counts = {item.exercise: item for item in results.all(student)}
+    assigned = {
+        task: (earlier, file)
+        for (who, task), (earlier, sha256, file) in assigned_in(book).items()
+        if who == student and task in counts and counts[task].result.key.submission_sha256 == sha256
+    }
+    names = sorted(assigned) if exercise is None else [exercise]
+    if len(names) > 1:
+        message, advice = (
+            f"{student!r} has several assigned files.",
+            f"Add --exercise, one of {', '.join(names)}.",
+        )
+        raise UsageError(message, help=advice, code="needs_exercise")
+    if not names or names[0] not in assigned:
+        message = f"No assigned file counts for {student!r}{f' and {exercise}' if exercise else ''}."
+        advice = f"{command('grade', 'log', results.folder, student)} lists what was assigned."
+        raise NotFoundError(message, help=advice, code="no_assignment")
+    task = names[0]
+    before, (earlier, file) = counts[task], assigned[task]
+    if not earlier or not book.confirm(replace(before.result.key, submission_sha256=earlier)):
+        book.take_back(before.result.key, results.nothing(student, task, MISSING).verdict)
+    after = next(Results(book).all(student, task), None)
+    told = counted(before, file), counted(after)
+    book.note(Decision("", "", "assign", student, task, reason.strip() or "taken back", *told))
+    return Assigned(Assignment(student, task, file, Path()), before, after)

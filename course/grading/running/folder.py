@@ -11,7 +11,7 @@ import msgspec
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.file import explained, rescue
+from course.grading.gradebook.file import rescue
 from course.grading.gradebook.records import Looked
 from course.grading.gradebook.salvage import back_up
 from course.grading.results.effective import Results, recorded
@@ -163,9 +163,7 @@ def note_looked(
     if looked is None:
         known = (*book.exercise_ids(), *(one.id for one in book.exercises()))
         looked = {name: Looked(whole=True) for name in known}
-    with explained(book.path):
-        without = msgspec.json.decode(book.meta().get("without_work", "[]"), type=list[str])
-    new = others - {*book.student_ids(), *without}
+    new = others - {*book.student_ids(), *book.without_work()}
     looked = {name: one.without(new) for name, one in looked.items()}
     for name in exercises:
         was = looked.get(name, Looked()).having(read)
@@ -186,7 +184,5 @@ def note_unread(book: Gradebook, unread: Iterable[tuple[str, str]]) -> None:
 
 def note_without_work(book: Gradebook, students: set[str]) -> None:
     """Keep the names of the students in whose folders there is nothing to grade: no result names them."""
-    with explained(book.path):
-        known = msgspec.json.decode(book.meta().get("without_work", "[]"), type=list[str])
-    names = sorted({*known, *students} - set(book.student_ids()))
+    names = sorted({*book.without_work(), *students} - set(book.student_ids()))
     book.set_meta(without_work=msgspec.json.encode(names).decode() if names else None)

@@ -4,10 +4,11 @@ import contextlib
 import os
 import secrets
 import time
+import unicodedata
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import msgspec
@@ -18,7 +19,7 @@ from course.catalog.questions import read_questions
 from course.catalog.reading import refuse_blanks
 from course.errors import ContentError, UngradableError, UsageError
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.records import GradedExercise, Key, Result, SubmittedAt
+from course.grading.gradebook.records import GradedExercise, Key, PlatformIdentity, Result, SubmittedAt
 from course.grading.gradebook.salvage import back_up
 from course.grading.intake.archives import RefusedError
 from course.grading.intake.downloads import ClassList, Student, class_list
@@ -69,6 +70,7 @@ class Summary:
         already: results of an earlier run.
         stay: of these, those whose file is gone, or is assigned and has changed; a sentence each.
         lower: scores that are lower than before a resumed run, a sentence each.
+        untimed: "student exercise" of new work without a trusted time, where the earlier work had one.
         missing: students who handed in nothing at all: enrolled, or without a roster those with a folder.
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
@@ -92,6 +94,7 @@ class Summary:
     already: int = 0
     stay: list[str] = field(default_factory=list)
     lower: list[str] = field(default_factory=list)
+    untimed: list[str] = field(default_factory=list)
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
     moved: list[ScoreChange] = field(default_factory=list)
@@ -238,7 +241,9 @@ def grade_class(
         run.note_times()
         runs.note_unread(book, run.unread)
         summary = run.summary
-        summary.unrecognised = [] if options.only else members.unrecognised
+        if not options.only:
+            summary.unrecognised = members.unrecognised
+            book.set_meta(unrecognised=msgspec.json.encode(members.unrecognised).decode())
         runs.note_without_work(book, run.names)
         results = Results(book, run.roster)
         summary.count(results)
@@ -286,10 +291,14 @@ class _Run:
     def __init__(
         self, members: ClassList, graders: Unpacked, folder: Path, options: RunOptions, book: Gradebook
     ) -> None:
-        only = options.only
-        self._students = [one for one in members.students if not only or one.name in only]
+        known = as_known(members, book)
+        only = {
+            one.name for was, one in zip(members.students, known, strict=True) if was.name in options.only
+        }
+        only |= {*options.only}
+        self._students = [one for one in known if not only or one.name in only]
         self.names = {one.name for one in self._students}
-        self._left_aside = {one.name for one in members.students} - self.names
+        self._left_aside = {one.name for one in known} - self.names
         self.unread: set[tuple[str, str]] = set()
         self._graders = graders
         self._catalog = graders.catalog
@@ -313,7 +322,7 @@ class _Run:
         self._scored: deque[tuple[Result, dict[str, bytes]]] = deque()
         _check_assignment(members, book, out=book.path.parent)
         self._found = set(book.found())
-        self._assigned = _assigned(book)
+        self._assigned = assigned_in(book)
         before, looked = book.waiting(), book.looked()
         self._note_facts()
         self.view = Results(book)
@@ -432,7 +441,9 @@ class _Run:
 
     def replacing(self, key: Key) -> AbstractContextManager[None]:
         """Where a result takes the place of another: only a resumed run finds one."""
-        return replacing(self._book, self.view, key) if self._options.resume else contextlib.nullcontext()
+        if not self._options.resume:
+            return contextlib.nullcontext()
+        return replacing(self._book, self.view, key, self.summary.untimed)
 
     def _note_found(self, entry: Entry) -> None:
         about = (entry.student, entry.exercise.id)
@@ -493,15 +504,18 @@ class _Run:
         self._times.clear()
 
 
-def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str, str]]:
+def assigned_in(book: Gradebook) -> dict[tuple[str, str], tuple[str, str, str]]:
     """The submission that an assigned file took the place of, and the file with its name, by student and
-    exercise."""
+    exercise; none that was taken back."""
     found: dict[tuple[str, str], tuple[str, str, str]] = {}
     for one in book.journal():
         if one.kind == "assign":
             about, before = (one.student, one.exercise), counted_in(one.before).submission
             first, last, _ = found.get(about, (before, before, ""))  # a second one replaces the first
             now = counted_in(one.after)
+            if not now.file:
+                found.pop(about, None)
+                continue
             found[about] = (first if last == before else before), now.submission, now.file
     return found
 
@@ -553,6 +567,45 @@ def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...
         except ContentError as error:
             raise _unfinished(f"Exercise {exercise.id}", error, catalog, "it") from None
     return chosen
+
+
+def as_known(members: ClassList, book: Gradebook) -> list[Student]:
+    """The students of a class folder, each by the name that the gradebook has for them.
+
+    A platform's number is one student's, whatever comes with it: a surname changes, and student ids are
+    entered later. A Mac spells accents otherwise.
+    """
+    called = book.students()
+    there = {*called, *book.student_ids(), *book.without_work()}
+    names: dict[object, set[str]] = {}
+    for name in there:
+        for one in _marks(name, called.get(name)):
+            names.setdefault(one, set()).add(name)
+    taken = {student.name for student in members.students}
+    found = []
+    for student in members.students:
+        if student.name not in there:
+            marks = _marks(student.name, student.identity)
+            mine = next((names[one] for one in marks if one in names), set())
+            name = min(mine, default=student.name)
+            if len(mine) == 1 and name not in taken and not _differs(student.identity, called.get(name)):
+                taken.add(name)
+                student = replace(student, name=name)  # noqa: PLW2901 - the same one
+        found.append(student)
+    return found
+
+
+def _marks(name: str, who: PlatformIdentity | None) -> list[object]:
+    """What tells a student apart, the surest first."""
+    if who is None:
+        return [("", unicodedata.normalize("NFC", name))]
+    keys = (who.sid, who.email.casefold()) if who.source == "gradescope" else (who.key,)
+    return [(who.source, column, key) for column, key in enumerate(keys) if key]
+
+
+def _differs(one: PlatformIdentity | None, other: PlatformIdentity | None) -> bool:
+    """Whether two students of Gradescope's have an address in common, and ids of their own."""
+    return bool(one and other and one.sid and other.sid and one.sid != other.sid)
 
 
 def _check_assignment(members: ClassList, book: Gradebook, out: Path) -> None:

@@ -304,6 +304,144 @@ def test_no_file_is_offered_for_a_quiz(course, here):
     assert "A quiz is graded from its record" in refused.json["error"]["message"]
 
 
+_META = "{0}:\n  :submitters:\n  - :name: Ada\n    :sid: '{1}'\n    :email: ada@u.x\n"
+
+
+@pytest.mark.parametrize(
+    ("first", "later"),
+    [
+        ("byronada_109_1_doubling.py", "lovelaceada_109_2_doubling-1.py"),
+        ("Ada Byron_109_assignsubmission_file/doubling.py", "Ada L_109_assignsubmission_file/doubling.py"),
+        ("Zo\u00eb/doubling.py", "Zoe\u0308/doubling.py"),
+        ("submission_1/doubling.py", "submission_2/doubling.py"),
+    ],
+    ids=["canvas", "moodle", "folders", "gradescope"],
+)
+def test_a_student_whose_name_or_id_is_written_otherwise_later_stays_one(course, here, first, later):
+    for number, path in enumerate((first, later)):
+        file = here / f"week{number}" / path
+        file.parent.mkdir(parents=True)
+        file.write_text(SOURCE + "# more\n" * number)
+        if path.startswith("submission"):
+            pytest.importorskip("yaml")
+            sid = "0012" if number else ""  # entered in Gradescope after the first download
+            (file.parents[1] / "submission_metadata.yml").write_text(_META.format(file.parent.name, sid))
+    run = ("grade", "run", "--out", "new", "--exercise", "doubling")
+    assert course(*run, "week0").code == 0
+    (student,) = [one["student"] for one in read_csv(here / "new" / "grades.csv")]
+    course("grade", "override", "new", student, "doubling", "--score", "3", "--reason", "oral")
+    assert course(*run, "week1", "--resume").code == 0
+    rows = [(one["student"], one["score"], one["raw_score"]) for one in read_csv(here / "new" / "grades.csv")]
+    assert rows == [(student, "3", "10")]
+
+
+def test_of_two_submissions_of_one_student_an_instructor_has_to_choose(course, here):
+    pytest.importorskip("yaml")
+    for name in ("submission_1", "submission_2"):
+        (here / "gs" / name).mkdir(parents=True)
+        (here / "gs" / name / "doubling.py").write_text(f"{SOURCE}# {name}\n")
+        (here / "gs" / name / "submission.json").write_text('{"format_version": 1')
+    told = "".join(_META.format(name, "0012") for name in ("submission_1", "submission_2"))
+    (here / "gs" / "submission_metadata.yml").write_text(told)
+    (here / "roster.csv").write_text("student,canvas_id\n0012,1\n")
+    ran = course("grade", "run", "gs", "--out", "new", "--exercise", "doubling", "--roster", "roster.csv")
+    assert (ran.code, "handed in nothing" in ran.out) == (6, False)
+    (one,) = course("grade", "assign", "new", "--json").json["unsettled"]
+    assert (one["reason"], one["message"]) == (
+        "ambiguous_files",
+        "'0012' has several submissions: 'submission_1', 'submission_2'.",
+    )
+    assert [file["file"] for file in one["files"]] == ["submission_1/doubling.py", "submission_2/doubling.py"]
+    export = (
+        "grade",
+        "export",
+        "new",
+        "--format",
+        "canvas",
+        "--assignment",
+        "doubling=1",
+        "--missing",
+        "zero",
+    )
+    assert course(*export, "--json").json["error"]["code"] == "unseen_zeros"
+    ran = course("grade", "assign", "new", "0012", "submission_2/doubling.py", "--reason", "the later one")
+    assert "0012 doubling: ungradable -> graded, 10 of 10" in ran.out
+    assert course(*export).code == 0
+
+
+def test_a_file_without_an_owner_stops_an_export_until_it_is_someones(course, here):
+    (here / "class" / "eve_doubling.py").write_text(SOURCE)
+    (here / "roster.csv").write_text("student,canvas_id\nada,1\neve,2\n")
+    for name in ("bob", "cy"):
+        shutil.rmtree(here / "class" / name)
+    run = ("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--roster", "roster.csv")
+    assert course(*run).code == 6
+    said = "'eve_doubling.py': is in no student's folder"
+    assert course("grade", "assign", "new", "--json").json["unrecognised"] == [said]
+    assert f"1 of unknown owner:\n  {said}" in course("grade", "assign", "new").out
+    assert "eve_doubling.py" in (here / "new" / "report.html").read_text("utf-8")
+    export = ("grade", "export", "new", "--format", "canvas", "--assignment", "doubling=1")
+    assert course(*export, "--json").json["error"]["code"] == "unknown_owner"
+    assert course(*export, "--accept-zeros").code == 0
+    file = ("class/eve_doubling.py", "--exercise", "doubling", "--reason", "by its name")
+    course("grade", "assign", "new", "eve", *file)
+    assert course(*export).code == 0
+    course("grade", "assign", "new", "eve", "--lift")
+    assert course(*export).code == 4
+    (here / "class" / "eve_doubling.py").unlink()
+    course(*run, "--resume")
+    assert course(*export).code == 0
+
+
+def test_a_file_assigned_to_the_wrong_student_is_taken_back(course, here):
+    (here / "roster.csv").write_text("student\nada\nbob\ncy\neve\n")
+    again = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+    course(*again, "--roster", "roster.csv")
+
+    def row(student):
+        found = {one["student"]: one for one in read_csv(here / "out" / "grades.csv")}[student]
+        return found["state"], found["reason"], found["score"]
+
+    was = row("bob"), row("eve")
+    assert (
+        course("grade", "assign", "out", "eve", "--lift", "--json").json["error"]["code"] == "no_assignment"
+    )
+    for student, file in (("eve", "class/bob/hw.py"), ("bob", "hw.py")):
+        course("grade", "assign", "out", student, file, "--exercise", "doubling", "--reason", "x")
+        assert row(student) == ("graded", "", "10")
+    before = book(here)
+    told = course("grade", "assign", "out", "eve", "--lift", "--dry-run").out
+    assert ("1 would be taken back." in told, book(here)) == (True, before)
+    told = course("grade", "assign", "out", "eve", "--lift").out
+    assert "eve doubling: graded -> missing, no score; without 'class/bob/hw.py'" in told
+    (lifted,) = course("grade", "assign", "out", "bob", "--lift", "--reason", "his", "--json").json["lifted"]
+    assert (lifted["file"], lifted["state_after"], lifted["score_after"]) == ("hw.py", "ungradable", 0.0)
+    assert (
+        (row("bob"), row("eve")) == was == (("ungradable", "no_file", "0"), ("missing", "not_submitted", ""))
+    )
+    course(*again)
+    assert (row("bob"), row("eve")) == was
+    assert "hw.py: defines double" in course("grade", "assign", "out").out
+    assert "eve" not in course("grade", "similar", "out").out
+    assert "10 of 10, 'class/bob/hw.py' -> no score" in course("grade", "log", "out", "eve").out
+    assert course("grade", "salvage", "out", "--to", "new").code == 0
+    assert '"eve","doubling",""' in (here / "new" / "grades.csv").read_text("utf-8")
+    course(
+        "grade", "assign", "out", "eve", "class/bob/hw.py", "--exercise", "doubling", "--reason", "after all"
+    )
+    assert row("eve") == ("graded", "", "10")
+    for words in (("eve", "hw.py", "--lift"), ("--lift",), ("eve", "--lift", "--accept-names")):
+        assert course("grade", "assign", "out", *words).code == 2
+
+
+def test_a_score_by_hand_for_nothing_is_no_work_that_could_not_be_graded(course, here):
+    (here / "roster.csv").write_text("student\nada\nbob\ncy\neve\n")
+    course("grade", "run", "class", "--out", "out", "--resume", "--roster", "roster.csv")
+    course("grade", "override", "out", "eve", "doubling", "--score", "3", "--reason", "oral")
+    row = {one["student"]: one for one in read_csv(here / "out" / "grades.csv")}["eve"]
+    assert (row["state"], row["score"], row["raw_score"]) == ("missing", "3", "")
+
+
 def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here):
     before = book(here)
     ran = course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x", "--dry-run")
@@ -328,6 +466,25 @@ def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here):
     assert "ada doubling" not in course("grade", "log", "out", "bob").out, (
         "a class's change was told of others"
     )
+
+
+def test_a_time_in_a_list_is_not_that_of_other_work_which_comes_later(course, here):
+    (here / "late.toml").write_text(
+        'format_version = 1\npercent_per_day = 10\n[[deadline]]\nexercise = "*"\ndue = 2026-01-01T00:00:00Z\n'
+    )
+    (here / "times.csv").write_text("student,exercise,submitted_at\nada,doubling,2026-01-01T12:00:00Z\n")
+    course("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv")
+    again = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+    (here / "class" / "ada" / "doubling.py").write_text(SOURCE + "# more\n")
+    told = json.loads(course(*again, "--json").out.splitlines()[-1])
+    assert told["untimed"] == ["ada doubling"]
+    assert "no trusted submission time" in course("grade", "late", "out").out
+    rows = {row["student"]: row for row in read_csv(here / "out" / "grades.csv")}
+    assert (rows["ada"]["submitted_at"], rows["ada"]["score"]) == ("", "10")
+    (here / "class" / "ada" / "doubling.py").write_text(SOURCE)  # as it was, when it was
+    course(*again)
+    rows = {row["student"]: row for row in read_csv(here / "out" / "grades.csv")}
+    assert (rows["ada"]["submitted_at"], rows["ada"]["score"]) == ("2026-01-01T12:00:00Z", "9")
 
 
 def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(course, here, monkeypatch):

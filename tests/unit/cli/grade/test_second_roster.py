@@ -420,3 +420,68 @@ def test_moodles_worksheet_says_when_work_was_handed_in(course, tmp_path, words)
     write(tmp_path, "sheet.csv", sheet.replace(words.format(at), "gestern"))
     ran = course(*told)
     assert (ran.code, "'gestern' is not a time" in ran.err) == (2, True)
+
+
+SHEET = (
+    'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Last modified (submission)",'
+    '"Last modified (grade)"\n'
+)
+
+
+def handed_in(number, name, status="Submitted"):
+    at = DUE + dt.timedelta(days=1, hours=1)
+    return f'Participant {number},{name},x@y.org,"{status}",,10,"{at:%A, %d %B %Y, %H:%M}",-\n'
+
+
+def test_a_number_of_moodles_beats_a_namesake_and_rows_that_fit_nobody_are_named(course, tmp_path):
+    who = {"Kim_101": "101", "Kim_102": "102"}
+    with make_book(tmp_path / "out", dict.fromkeys(who, RIGHT)) as book:
+        book.set_students({name: PlatformIdentity("moodle", one, "Kim") for name, one in who.items()})
+    write(tmp_path, "late.toml", POLICY[: POLICY.index("[[extension]]")])
+    write(tmp_path, "sheet.csv", SHEET + handed_in(101, "Kim") + handed_in(103, "Lou"))
+    times = ("--times", "sheet.csv", "--exercise", "doubling", "--policy", "late.toml")
+    ran = course("grade", "late", "out", *times)
+    assert "Kim_101 doubling: 1 d 1 h late" in ran.out
+    assert "The gradebook has no one student for the row of Lou_103 in sheet.csv." in ran.err
+    write(tmp_path, "sheet.csv", SHEET + handed_in(101, "Kim"))
+    export = ("export", "out", "--format", "moodle-worksheet", "--roster", "sheet.csv")
+    told = course("grade", *export).err
+    assert "1 student. In one row with 'Kim_101': 'Kim_102'." in told
+    assert "is one student in a new run (another --out)" in " ".join(told.split())
+    assert course("grade", *export, "--partial", "-o", "sheet-filled.csv").code == 0
+    filled = csv.DictReader((tmp_path / "sheet-filled.csv").read_text("utf-8").splitlines())
+    assert [row["Grade"] for row in filled] == ["8"], "the row of the number was not hers"
+
+
+def test_who_is_late_and_has_more_time_in_moodle_is_named_until_it_is_given_here(course, tmp_path):
+    with make_book(tmp_path / "out", {"Ada_101": RIGHT, "Bob_102": RIGHT}):
+        pass
+    policy = POLICY[: POLICY.index("[[extension]]")]
+    write(tmp_path, "late.toml", policy)
+    until = "Zur Bewertung abgegeben - Verlängerung bis: Donnerstag, 3. Dezember 2026, 23:59"
+    write(tmp_path, "sheet.csv", SHEET + handed_in(101, "Ada", until) + handed_in(102, "Bob"))
+    times = ("--times", "sheet.csv", "--exercise", "doubling", "--policy", "late.toml")
+    assert "By sheet.csv, Moodle gave Ada_101 more time." in " ".join(
+        course("grade", "late", "out", *times).err.split()
+    )
+    write(tmp_path, "late.toml", policy + '[[extension]]\nstudent = "Ada_101"\ndays = 3\n')
+    ran = course("grade", "late", "out", *times)
+    assert (ran.code, ran.err, "Bob_102 doubling: 1 d 1 h late" in ran.out) == (0, "", True)
+
+
+def test_an_hour_of_summer_time_that_costs_points_of_an_extension_is_named(course, tmp_path):
+    with make_book(tmp_path / "out", {"Ada_101": RIGHT}):
+        pass
+    named = []
+    for due, days in (("2026-10-24", 1), ("2026-10-24", 1.042), ("2026-10-27", 1), ("2026-10-25", 0)):
+        write(
+            tmp_path,
+            "late.toml",
+            f'format_version = 1\npercent_per_day = 10\n[[deadline]]\nexercise = "*"\n'
+            f'due = {due}T23:59:00+02:00\n[[extension]]\nstudent = "Ada_101"\ndays = {days}\n',
+        )
+        at = dt.datetime.fromisoformat(f"{due}T23:30:00+01:00") + dt.timedelta(days=min(days, 1))
+        write(tmp_path, "times.csv", f"student,exercise,submitted_at\nAda_101,doubling,{at.isoformat()}\n")
+        ran = course("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv")
+        named.append("points of Ada_101: with `days = 1.042`" in " ".join(ran.err.split()))
+    assert named == [True, False, False, False]

@@ -67,12 +67,12 @@ def test_a_canvas_download_is_a_class(tmp_path, doubling):
     assert by_name["lovelaceada_101"].identity == PlatformIdentity("canvas", "101", "lovelaceada")
 
 
-def test_one_canvas_user_with_two_names_is_nobody(tmp_path):
+def test_of_one_canvas_user_with_two_names_somebody_has_to_choose(tmp_path, doubling):
     lay(tmp_path, "ada_101_1_doubling.py", "eve_101_2_doubling.py", "bob_102_3_doubling.py")
     found = class_list(tmp_path)
-    assert [student.name for student in found.students] == ["bob_102"]
-    assert len(found.unrecognised) == 1
-    assert "'ada' and 'eve'" in found.unrecognised[0]
+    assert [student.name for student in found.students] == ["ada_101", "bob_102"]
+    assert "'ada' and 'eve'" in found.students[0].unclear
+    assert graded(found, doubling)["ada_101"] == "ambiguous_files"
 
 
 def test_a_moodle_download_with_folders_is_a_class(tmp_path, doubling):
@@ -162,14 +162,16 @@ def test_a_gradescope_download_is_a_class(tmp_path, doubling):
         "31": b"submission_900/doubling.py",
         "bob@x.org": b"submission_901/doubling.py",
         "33": b"submission_901/doubling.py",
+        "34": "ambiguous_files",
     }
     at = dt.datetime(2026, 12, 1, 23, 59, 30, tzinfo=dt.UTC).timestamp()
     assert {student.name: student.submitted_at for student in found.students} == {
-        "31": at, "bob@x.org": None, "33": None,
+        "31": at, "bob@x.org": None, "33": None, "34": None,
     }  # fmt: skip
     words = "\n".join(sorted(found.unrecognised))
-    assert len(found.unrecognised) == 4
-    for fact in ("submission_905", "'34' has several", "names no student", "../../etc"):
+    assert "'34' has several submissions" in found.students[2].unclear
+    assert len(found.unrecognised) == 3
+    for fact in ("submission_905", "names no student", "../../etc"):
         assert fact in words
 
 

@@ -25,7 +25,7 @@ from typing import Any
 
 from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import WARM_UPS
-from course.progress.store import Store, numbered
+from course.progress.store import Store, gone, numbered
 from course.strangers import read_bytes, toml
 
 MARKER = "course.toml"
@@ -123,6 +123,11 @@ class Workspace:
         """Where a file belongs that lies in this folder: an exercise's id, or what its ``place`` says."""
         return self.root / place / name
 
+    def must_be_there(self) -> None:
+        """Raise MissingCapabilityError where it was moved or removed since it was found."""
+        if not (self.root / MARKER).is_file():
+            raise gone(self.root)
+
     def has_file(self, place: str, module: str) -> bool:
         """Whether an exercise's module or notebook is there; where that cannot be seen, yes."""
         with contextlib.suppress(OSError):
@@ -154,8 +159,9 @@ class Workspace:
         """Put a file where none is, and remember how it looked; False if there is one already.
 
         Raises:
-            MissingCapabilityError: the workspace cannot be written.
+            MissingCapabilityError: the workspace cannot be written, or is gone.
         """
+        self.must_be_there()
         target = self.path(place, name)
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -183,6 +189,7 @@ class Workspace:
         Raises:
             MissingCapabilityError: the copy cannot be written; ``path`` must then stay as it is.
         """
+        self.must_be_there()
         stamp = datetime.now().astimezone().strftime("%Y%m%d-%H%M%S")
         relative = Path(self.shown(path)) if path.is_relative_to(self.root) else Path(path.name)
         try:
@@ -216,10 +223,12 @@ class Recorder:
     Attributes:
         store: None where there is no workspace; events are dropped then.
         trouble: why something was not recorded, a sentence; empty while all is well.
+        kept: whether the last event was recorded.
     """
 
     store: Store | None
     trouble: str = ""
+    kept: bool = False
 
     @classmethod
     def of_kernel(cls, course_id: str) -> Recorder | None:
@@ -237,10 +246,12 @@ class Recorder:
         return cls(workspace.store)
 
     def __call__(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
+        self.kept = False
         if self.store is None:
             return
         try:
             self.store.append(kind, subject, data)
+            self.kept = True
         except CourseError as error:
             self.trouble = not_recorded(error)
 

@@ -257,6 +257,8 @@ class Practice:
         """
         exercise, opened = self._catalog.exercise(name), self._opened[name]
         path, told = self._path(exercise), ""
+        if self._workspace is not None:
+            self._workspace.must_be_there()
         now = path.read_bytes() if path.is_file() else opened
         if source == _text(opened):  # nothing was typed
             return "" if now == opened else "It was saved elsewhere meanwhile, and stays as it is there."

@@ -197,7 +197,7 @@ class Writer:
 
     def __init__(self, store: Store | None) -> None:
         self._record = Recorder(store)
-        self._queue: queue.Queue[tuple[str, str, Mapping[str, Any]] | None] = queue.Queue()
+        self._queue: queue.Queue[tuple[str, str, Mapping[str, Any]] | threading.Event | None] = queue.Queue()
         self._thread: threading.Thread | None = None
 
     @property
@@ -214,6 +214,14 @@ class Writer:
             self._thread.start()
         self._queue.put((kind, subject, data))
 
+    def kept(self, patience: float) -> bool:
+        """Whether the event added last is in the record, as far as that is known within this time, in s."""
+        if self._thread is None:
+            return False
+        reached = threading.Event()
+        self._queue.put(reached)
+        return reached.wait(patience) and self._record.kept
+
     def close(self) -> None:
         """Wait until everything is written."""
         if self._thread is not None:
@@ -223,7 +231,10 @@ class Writer:
 
     def _work(self) -> None:
         while (event := self._queue.get()) is not None:
-            self._record(*event)
+            if isinstance(event, threading.Event):
+                event.set()
+            else:
+                self._record(*event)
 
 
 class InProgress:

@@ -37,6 +37,7 @@ class Here:
     catalog: Catalog
     workspace: Workspace
     warnings: list[str] = field(default_factory=list)
+    _told: set[str] = field(default_factory=set)
 
     @classmethod
     def load(cls) -> Here:
@@ -179,16 +180,24 @@ class Here:
         """How far the student is with everything, as it is now; raises what ``history`` raises."""
         return Standing(self.workspace, self.catalog.syllabus.split)
 
-    def record(self, kind: str, subject: str, data: dict[str, object]) -> None:
-        """Note an event; where that fails, the command goes on and says so."""
+    def record(self, kind: str, subject: str, data: dict[str, object]) -> bool:
+        """Note an event; where that fails, give False, and the command goes on and says so."""
         recorder = Recorder(self.workspace.store)
         recorder(kind, subject, data)
-        self.warnings += [recorder.trouble] if recorder.trouble else []
+        if recorder.trouble and recorder.trouble not in self.warnings:
+            self.warnings.append(recorder.trouble)
+        return recorder.kept
+
+    def tell(self) -> None:
+        """Say what was not recorded, each sentence once."""
+        for warning in dict.fromkeys(self.warnings):
+            if warning not in self._told:
+                current().warn(warning)
+        self._told.update(self.warnings)
 
     def answer(self, reply: Envelope) -> int:
         """End a command: say what was not recorded, print the object of ``--json``, give the exit code."""
-        for warning in self.warnings:
-            current().warn(warning)
+        self.tell()
         return current().answer(reply)
 
     def _folder_name(self) -> str:

@@ -66,6 +66,7 @@ class LineReader:
         self._progress = InProgress(self._script, self._events, self._write, catalog.version)
         self._files: dict[int, Path] = {}  # by number of the cell that the student changes in it
         self._bench = Bench(self._progress, self._ran)
+        self._kept = False  # whether the last event was recorded
         self._over = threading.Event()
         self._gave: CellOutput | None = None
         self._does: dict[str, Callable[[str, int], int | None]] = {
@@ -184,7 +185,7 @@ class LineReader:
         if typed is None or typed.lower() in _STOP[:2]:
             return None
         self._progress.predict(question, typed)
-        self._say("Kept." if typed else "Skipped.")
+        self._say("Skipped." if not typed else "Kept." if self._kept else "Not kept.")
         return number + 1
 
     def _remind(self, number: int) -> None:
@@ -205,7 +206,8 @@ class LineReader:
             self._say("No prediction is answered on this page.")
             return
         self._progress.judge(question, JUDGEMENTS[typed - 1])
-        self._say(f"Kept: {('right', 'nearly right', 'wrong')[typed - 1]}.")
+        kept = "Kept" if self._kept else "Not kept"
+        self._say(f"{kept}: {('right', 'nearly right', 'wrong')[typed - 1]}.")
 
     # -- cells -----------------------------------------------------------------------------------------
 
@@ -347,7 +349,8 @@ class LineReader:
 
     def _write(self, kind: str, subject: str, data: Mapping[str, object]) -> None:
         if self._here is not None:
-            self._here.record(kind, subject, dict(data))
+            self._kept = self._here.record(kind, subject, dict(data))
+            self._here.tell()
 
 
 def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:

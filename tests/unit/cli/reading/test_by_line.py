@@ -163,6 +163,18 @@ def test_outside_of_a_workspace_it_reads_and_says_what_a_task_needs(tmp_path, mo
     assert typed.said.count("Make a workspace first: course init my-course") == 1
 
 
+def test_a_prediction_that_cannot_be_recorded_is_not_called_kept_and_the_reason_comes_at_once(workspace):
+    here = Here.load()
+    workspace.root.rename(workspace.root.with_name("moved"))
+    typed = Typed(
+        lambda question: "q" if "Not kept." in typed.said else "it grows" if "pred" in question else ""
+    )
+    assert not typed.read(LESSON, here)
+    assert "Kept." not in typed.said
+    assert typed.said.count("it was moved or removed") == 1
+    assert not workspace.root.exists()
+
+
 EXERCISE = "integrators"
 #: Code, output and tables are as they are: a cell of a table may say what another says.
 _VERBATIM = re.compile(r"^(Python code|It prints|Text|Table), \d+ ")

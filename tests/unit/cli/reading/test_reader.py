@@ -175,6 +175,21 @@ async def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(app, 
     assert "3 wrong" not in screen(app)
 
 
+@pytest.mark.parametrize("moved", [False, True])
+def test_a_prediction_is_called_kept_only_where_it_is_recorded(mine, moved):
+    async def journey(app, pilot):
+        await to_question(app, pilot)
+        if moved:
+            mine.root.rename(mine.root.with_name("moved"))
+        await pilot.press("enter", *"seven", "enter")
+        await pilot.pause()
+        words = "Not kept: q says why." if moved else "Kept."
+        assert app.message.startswith(f"{words} The answer is open.")
+
+    app = reading(journey, workspace=mine)
+    assert ("it was moved or removed" in app.page.trouble) == moved == (not mine.root.exists())
+
+
 @reads()
 async def test_space_past_an_open_prediction_says_so_and_b_leads_back(app, pilot):
     await to_question(app, pilot)

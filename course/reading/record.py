@@ -467,18 +467,36 @@ class Hit:
 def find(progress: InProgress, wanted: str) -> Iterator[Hit]:
     """Where words occur in a lesson, a block at most once; capitals do not matter.
 
-    Text that may answer an open prediction is not searched.
+    What stands above its first block is found at -1. Text that may answer an open prediction is not searched.
     """
-    script = progress.script
+    script, lesson = progress.script, progress.script.lesson
     needle = " ".join(wanted.split()).casefold()
     if not needle:
         return
-    for index, block in enumerate(script.blocks):
-        if progress.closed_by(index) is not None and script.gives_away(index):
-            continue
-        text = " ".join(words_of(block).split())
+    shown = [(-1, " ".join((lesson.title, lesson.summary, *lesson.objectives)))]
+    shown += [
+        (index, words_of(block))
+        for index, block in enumerate(script.blocks)
+        if progress.closed_by(index) is None or not script.gives_away(index)
+    ]
+    for index, words in shown:
+        text = " ".join(words.split())
         at = text.casefold().find(needle)
         if at >= 0:
             first, last = max(0, at - _BEFORE), at + len(needle) + _AFTER
             excerpt = ("…" if first else "") + text[first:last] + ("…" if last < len(text) else "")
             yield Hit(index, excerpt)
+
+
+def unless_hidden(*lessons: InProgress) -> str:
+    """Ends the sentence that words are nowhere in these lessons: open predictions hide some of their text."""
+    hidden = sum(
+        any(one.script.gives_away(index) for index in range(question.index + 1, question.end))
+        for one in lessons
+        for question in one.script.questions
+        if one.prediction(question) is None
+    )
+    if not hidden:
+        return "."
+    which = "the open prediction" if hidden == 1 else f"one of {hidden} open predictions"
+    return f", unless behind {which}."

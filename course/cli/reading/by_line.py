@@ -25,7 +25,7 @@ from course.progress.history import lesson_events
 from course.progress.store import Event
 from course.reading.cells import CellOutput
 from course.reading.parts import Cell, Question, read_script
-from course.reading.record import JUDGEMENTS, InProgress, Place, find
+from course.reading.record import JUDGEMENTS, InProgress, Place, find, unless_hidden
 
 _ON_WORDS, _STOP = ("", "y", "yes", "n", "next"), ("q", "quit", "no")
 _ON = "Enter goes on"
@@ -336,9 +336,9 @@ class LineReader:
     def _search(self, wanted: str) -> None:
         hits = list(find(self._progress, wanted))
         for hit in hits:
-            self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
+            self._say(f"Page {max(1, bisect.bisect_right(self._starts, hit.block))}: {hit.excerpt}")
         if not hits:
-            self._say("Not in this lesson.")
+            self._say(f"Not in this lesson{unless_hidden(self._progress)}")
 
     def _help(self, _rest: str, _number: int) -> None:
         for word, what in _WORDS:

@@ -415,6 +415,24 @@ def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(mine, monkeypat
     assert mine.store.events("bookmark", LESSON)[-1].data["block"] == app.page.place().block > 0
 
 
+@reads(lesson="collisions-and-contact")
+async def test_search_finds_what_the_first_screen_says_and_does_not_deny_what_it_hides(app, pilot):
+    lesson = app.page.progress.script.lesson
+    word = lesson.summary.rstrip(".").split()[-1]
+    assert word in screen(app)
+    assert app._search(word)[0][0] == f"lesson:{lesson.id}:-1"
+    ((key, said),) = app._search("zyx")
+    assert not key
+    assert re.fullmatch(r"In no lesson, unless behind one of \d+ open predictions\.", said)
+    await pilot.press("slash", *"zyx", "enter")
+    await pilot.pause()
+    await pilot.press("escape", "slash", *word, "enter")
+    await pilot.pause()
+    await pilot.press("enter")
+    await settled(app, pilot)
+    assert app.page.place().block == -1
+
+
 @reads()
 async def test_links_search_contents_and_the_way_back(app, pilot):
     start = app.page.place()

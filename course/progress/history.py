@@ -386,7 +386,7 @@ class Standing:
         split: lessons that were part of another one, and that one.
 
     Attributes:
-        started: ids of the exercises that something was handed out for.
+        started: ids of the exercises that something was handed out for, or that have a file.
     """
 
     def __init__(
@@ -395,7 +395,7 @@ class Standing:
         self._workspace = workspace
         self._split = split
         self._record = workspace.store.record() if workspace is not None else None
-        self.started = frozenset(workspace.started() if workspace is not None else ())
+        self.started = frozenset(workspace.begun() if workspace is not None else ())
         self._histories: dict[str, History] = {}
 
     def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:

@@ -155,6 +155,15 @@ class Workspace:
                 names += (entry.name for entry in folder.iterdir() if entry.is_dir())
         return tuple(sorted(name for name in names if name != WARM_UPS))
 
+    def begun(self) -> tuple[str, ...]:
+        """Those, and the folders with code: a clone of the workspace has the files without their record."""
+        names = set(self.started())
+        for folder in (self.root, self.root / WARM_UPS):
+            with contextlib.suppress(OSError):
+                own = (entry for entry in folder.iterdir() if entry.is_dir() and entry.name[0] != ".")
+                names |= {one.name for one in own if any(one.glob("*.py")) or any(one.glob("*.ipynb"))}
+        return tuple(sorted(names - {WARM_UPS}))
+
     def give(self, place: str, name: str, data: bytes) -> bool:
         """Put a file where none is, and remember how it looked; False if there is one already.
 

@@ -58,18 +58,22 @@ class Here:
         """The exercise a command is about: the one named, the one the folder is of, or the last worked on.
 
         Raises:
-            NotFoundError: there is no such exercise, or none was started.
+            NotFoundError: there is no such exercise, or none was started, or several and nothing tells which.
         """
         if wanted is not None:
             # Completion of a folder name leaves a separator at its end.
             chosen = self.catalog.exercise_called(wanted.rstrip("/\\"))
             self._say_renumbered(chosen, wanted)
             return chosen
-        started = self.workspace.started()
-        for name in (self._folder_name(), self._last_worked_on(), started[0] if len(started) == 1 else ""):
+        begun = [name for name in self._known if name in self.workspace.begun()]
+        for name in (self._folder_name(), self._last_worked_on(), begun[0] if len(begun) == 1 else ""):
             if name in self._known:
                 return self.catalog.exercise(name)
-        raise self.nothing_started()
+        if not begun:
+            raise self.nothing_started()
+        problem = f"There are several exercises here, and none was worked on last: {', '.join(begun)}."
+        fix = f"Name one, as in `course check {begun[0]}`, or change into its folder."
+        raise NotFoundError(problem, help=fix, code="several_started")
 
     def of_folder(self) -> Exercise | None:
         """The exercise or warm-up that the current folder is of."""

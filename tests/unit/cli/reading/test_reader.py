@@ -219,6 +219,19 @@ def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(monkeypatch):
 
 
 @reads()
+async def test_a_cell_that_is_stopped_while_its_process_starts_took_the_time_that_its_reader_saw(app, pilot):
+    cell, bench = await to_cell(app, pilot), app.page.at_bench()
+    start = bench._ready
+    bench._ready = lambda: (time.sleep(0.3), start())[1]
+    await pilot.press("r")
+    bench.interrupt()
+    await ran(app, pilot)
+    state = app.page.progress.cell(cell)
+    assert state.error == "Stopped."
+    assert state.seconds >= 0.3
+
+
+@reads()
 async def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(app, pilot):
     cell = await to_cell(app, pilot)
     await pilot.press("r")

@@ -215,6 +215,11 @@ class Workspace:
             raise _not_writable(self.state / "backups", error) from error
         return copy
 
+    def is_newer(self, version: str) -> bool:
+        """Whether a later version of the course's content was put into it than this one."""
+        mine, other = ([int(part) for part in re.findall(r"\d+", one)[:3]] for one in (self.version, version))
+        return mine > other
+
     def note_version(self, version: str) -> None:
         """Note in ``course.toml`` which version the content is from now; comments there stay."""
         marker = self.root / MARKER

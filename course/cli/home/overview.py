@@ -216,7 +216,9 @@ def _inside(console: Console, here: Here) -> int:
         console.table(("Exercise", "No.", "State", "Score"), rows)
     if here.workspace.version != catalog.version:
         versions = f"The course is at version {catalog.version}, this workspace at {here.workspace.version}"
-        console.note(f"{versions}: course update --dry-run shows what is new.")
+        newer = here.workspace.is_newer(catalog.version)
+        advice = "install the newer course" if newer else "course update --dry-run shows what is new"
+        console.note(f"{versions}: {advice}.")
     if objectives:
         console.note("To play with: course sandbox")
     if ahead:

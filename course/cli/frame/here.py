@@ -65,7 +65,8 @@ class Here:
             chosen = self.catalog.exercise_called(wanted.rstrip("/\\"))
             self._say_renumbered(chosen, wanted)
             return chosen
-        begun = [name for name in self._known if name in self.workspace.begun()]
+        there = self.workspace.begun()
+        begun = [one.id for one in self._every() if one.id in there]
         for name in (self._folder_name(), self._last_worked_on(), begun[0] if len(begun) == 1 else ""):
             if name in self._known:
                 return self.catalog.exercise(name)
@@ -105,8 +106,10 @@ class Here:
     def started(self) -> tuple[Exercise, ...]:
         """The exercises that have been started, in the order they are done, and then the warm-ups."""
         names = set(self.workspace.started())
-        every = (*self.catalog.exercises(), *self.catalog.warm_ups())
-        return tuple(one for one in every if one.id in names)
+        return tuple(one for one in self._every() if one.id in names)
+
+    def _every(self) -> tuple[Exercise, ...]:
+        return *self.catalog.exercises(), *self.catalog.warm_ups()
 
     def misnamed(self, exercise: Exercise) -> str:
         """A file beside the student's whose name differs in capitals only; "" if there is none."""

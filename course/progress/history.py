@@ -302,6 +302,7 @@ class Mistake:
         raised: the exception that the last of them ended in; "" if it was none.
         mended: the run after which every check that showed it had passed; None while one has not.
         open: ids of the checks that showed it and have not passed since.
+        showing: ids of those that showed it when they were last run.
     """
 
     exercise: str
@@ -313,6 +314,12 @@ class Mistake:
     raised: str = ""
     mended: datetime | None = None
     open: set[str] = field(default_factory=set)
+    showing: set[str] = field(default_factory=set)
+
+    @property
+    def named(self) -> bool:
+        """Whether the newest checks of its function still name it; a half-saved file's is soon not."""
+        return bool(self.showing)
 
 
 def mistakes_of(events: Iterable[Event]) -> tuple[Mistake, ...]:
@@ -334,9 +341,12 @@ def mistakes_of(events: Iterable[Event]) -> tuple[Mistake, ...]:
             one.last, one.mended, one.raised = run.at, None, checks[0].raised
             one.runs += 1
             one.open |= {check.id for check in checks}
+        ran = {check.id for check in run.checks if check.status != _SKIP}
         passed = {check.id for check in run.checks if check.passed}
-        for one in found.values():
+        for key, one in found.items():
             if one.exercise == event.subject and one.open:
+                one.showing -= ran
+                one.showing |= {check.id for check in shown.get(key, ())}
                 one.open -= passed
                 one.mended = one.mended if one.open else run.at
     return tuple(found.values())
@@ -376,7 +386,7 @@ class Standing:
         split: lessons that were part of another one, and that one.
 
     Attributes:
-        started: ids of the exercises that something was handed out for.
+        started: ids of the exercises that something was handed out for, or that have a file.
     """
 
     def __init__(
@@ -385,7 +395,7 @@ class Standing:
         self._workspace = workspace
         self._split = split
         self._record = workspace.store.record() if workspace is not None else None
-        self.started = frozenset(workspace.started() if workspace is not None else ())
+        self.started = frozenset(workspace.begun() if workspace is not None else ())
         self._histories: dict[str, History] = {}
 
     def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:

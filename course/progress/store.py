@@ -8,6 +8,7 @@ does not work. Each event is one short transaction on a connection of its own, s
 from __future__ import annotations
 
 import contextlib
+import errno
 import itertools
 import json
 import math
@@ -48,6 +49,8 @@ _SCHEMA = (
 )
 #: Bytes of one event, and instructions of SQLite for one command: thirty times what a year of work takes.
 _LONGEST, _MILLIONS = 10_000_000, 5
+#: No space is left, or none of what this user may take.
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 _INSERT = "INSERT INTO event (at, kind, subject, data) VALUES (?, ?, ?, ?)"
 _SELECT = "SELECT id, at, kind, subject, data FROM event"
 
@@ -114,7 +117,8 @@ class Store:
     """The record in one file.
 
     Args:
-        path: the file; it and its folder come into being with the first event.
+        path: the file; it and its folder come into being with the first event. The workspace round them has
+            to be there: it may have been moved meanwhile, and no second one is made in its old place.
     """
 
     def __init__(self, path: Path) -> None:
@@ -185,7 +189,7 @@ class Store:
 
         try:
             if create:
-                self.path.parent.mkdir(parents=True, exist_ok=True)
+                self.path.parent.mkdir(exist_ok=True)
             database = sqlite3.connect(self.path, timeout=BUSY_TIMEOUT, isolation_level=None)
             with contextlib.closing(database):
                 database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)
@@ -194,8 +198,10 @@ class Store:
                 yield database
         except (sqlite3.Error, UnicodeDecodeError) as error:  # the second of names that are no text
             raise self._explained(error) from error
+        except FileNotFoundError as error:
+            raise gone(self.path.parent.parent) from error
         except OSError as error:
-            raise _not_writable(self.path, error.strerror or str(error)) from error
+            raise _not_writable(self.path, error.strerror or str(error), full=error.errno in _FULL) from error
 
     def _prepare(self, database: sqlite3.Connection, *, create: bool) -> None:
         version = _version(database)
@@ -220,7 +226,7 @@ class Store:
             return MissingCapabilityError(problem, help=fix, code="progress_busy")
         refused = ("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_FULL", "SQLITE_IOERR")
         if name.startswith(refused):
-            return _not_writable(self.path, str(error))
+            return _not_writable(self.path, str(error), full=name == "SQLITE_FULL")
         return _damaged(self.path, one_line(str(error))[:200])
 
 
@@ -291,7 +297,16 @@ def _damaged(path: Path, reason: str) -> IntegrityError:
     )
 
 
-def _not_writable(path: Path, reason: str) -> MissingCapabilityError:
+def gone(root: Path) -> MissingCapabilityError:
+    """The error that a workspace is no longer where it was."""
+    problem = f"The workspace {root} is no longer there: it was moved or removed."
+    fix = "Leave this, change to where the workspace is now, and start again there."
+    return MissingCapabilityError(problem, help=fix, code="workspace_gone")
+
+
+def _not_writable(path: Path, reason: str, *, full: bool = False) -> MissingCapabilityError:
     problem = f"{path} cannot be used ({reason})."
     fix = "Make the workspace writable, or copy it to a folder that is."
+    if full:
+        fix = "Free some space on its disk, or copy the workspace to another one."
     return MissingCapabilityError(problem, help=fix, code="not_writable")

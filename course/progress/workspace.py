@@ -25,7 +25,7 @@ from typing import Any
 
 from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import WARM_UPS
-from course.progress.store import Store, numbered
+from course.progress.store import Store, gone, numbered
 from course.strangers import read_bytes, toml
 
 MARKER = "course.toml"
@@ -143,6 +143,11 @@ class Workspace:
         """Where a file belongs that lies in this folder: an exercise's id, or what its ``place`` says."""
         return self.root / place / name
 
+    def must_be_there(self) -> None:
+        """Raise MissingCapabilityError where it was moved or removed since it was found."""
+        if not (self.root / MARKER).is_file():
+            raise gone(self.root)
+
     def has_file(self, place: str, module: str) -> bool:
         """Whether an exercise's module or notebook is there; where that cannot be seen, yes."""
         with contextlib.suppress(OSError):
@@ -170,12 +175,22 @@ class Workspace:
                 names += (entry.name for entry in folder.iterdir() if entry.is_dir())
         return tuple(sorted(name for name in names if name != WARM_UPS))
 
+    def begun(self) -> tuple[str, ...]:
+        """Those, and the folders with code: a clone of the workspace has the files without their record."""
+        names = set(self.started())
+        for folder in (self.root, self.root / WARM_UPS):
+            with contextlib.suppress(OSError):
+                own = (entry for entry in folder.iterdir() if entry.is_dir() and entry.name[0] != ".")
+                names |= {one.name for one in own if any(one.glob("*.py")) or any(one.glob("*.ipynb"))}
+        return tuple(sorted(names - {WARM_UPS}))
+
     def give(self, place: str, name: str, data: bytes) -> bool:
         """Put a file where none is, and remember how it looked; False if there is one already.
 
         Raises:
-            MissingCapabilityError: the workspace cannot be written.
+            MissingCapabilityError: the workspace cannot be written, or is gone.
         """
+        self.must_be_there()
         target = self.path(place, name)
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -203,6 +218,7 @@ class Workspace:
         Raises:
             MissingCapabilityError: the copy cannot be written; ``path`` must then stay as it is.
         """
+        self.must_be_there()
         stamp = datetime.now().astimezone().strftime("%Y%m%d-%H%M%S")
         relative = Path(self.shown(path)) if path.is_relative_to(self.root) else Path(path.name)
         try:
@@ -218,6 +234,11 @@ class Workspace:
         except OSError as error:
             raise _not_writable(self.state / "backups", error) from error
         return copy
+
+    def is_newer(self, version: str) -> bool:
+        """Whether a later version of the course's content was put into it than this one."""
+        mine, other = ([int(part) for part in re.findall(r"\d+", one)[:3]] for one in (self.version, version))
+        return mine > other
 
     def note_version(self, version: str) -> None:
         """Note in ``course.toml`` which version the content is from now; comments there stay."""
@@ -236,10 +257,12 @@ class Recorder:
     Attributes:
         store: None where there is no workspace; events are dropped then.
         trouble: why something was not recorded, a sentence; empty while all is well.
+        kept: whether the last event was recorded.
     """
 
     store: Store | None
     trouble: str = ""
+    kept: bool = False
 
     @classmethod
     def of_kernel(cls, course_id: str) -> Recorder | None:
@@ -257,10 +280,12 @@ class Recorder:
         return cls(workspace.store)
 
     def __call__(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
+        self.kept = False
         if self.store is None:
             return
         try:
             self.store.append(kind, subject, data)
+            self.kept = True
         except CourseError as error:
             self.trouble = not_recorded(error)
 

@@ -12,7 +12,7 @@ from course.progress import quiz
 from course.progress.quiz import Attempt, QuizHistory
 from course.quizzing.bank import Bank, MarkedQuestion, PosedQuestion, Result, clashing, mark, pose_case
 
-Record = Callable[[str, str, dict[str, object]], None]
+Record = Callable[[str, str, dict[str, object]], object]
 
 
 def fits(bank: Bank, attempt: Attempt) -> bool:

@@ -197,7 +197,7 @@ class Writer:
 
     def __init__(self, store: Store | None) -> None:
         self._record = Recorder(store)
-        self._queue: queue.Queue[tuple[str, str, Mapping[str, Any]] | None] = queue.Queue()
+        self._queue: queue.Queue[tuple[str, str, Mapping[str, Any]] | threading.Event | None] = queue.Queue()
         self._thread: threading.Thread | None = None
 
     @property
@@ -214,6 +214,14 @@ class Writer:
             self._thread.start()
         self._queue.put((kind, subject, data))
 
+    def kept(self, patience: float) -> bool:
+        """Whether the event added last is in the record, as far as that is known within this time, in s."""
+        if self._thread is None:
+            return False
+        reached = threading.Event()
+        self._queue.put(reached)
+        return reached.wait(patience) and self._record.kept
+
     def close(self) -> None:
         """Wait until everything is written."""
         if self._thread is not None:
@@ -223,7 +231,10 @@ class Writer:
 
     def _work(self) -> None:
         while (event := self._queue.get()) is not None:
-            self._record(*event)
+            if isinstance(event, threading.Event):
+                event.set()
+            else:
+                self._record(*event)
 
 
 class InProgress:
@@ -456,18 +467,36 @@ class Hit:
 def find(progress: InProgress, wanted: str) -> Iterator[Hit]:
     """Where words occur in a lesson, a block at most once; capitals do not matter.
 
-    Text that may answer an open prediction is not searched.
+    What stands above its first block is found at -1. Text that may answer an open prediction is not searched.
     """
-    script = progress.script
+    script, lesson = progress.script, progress.script.lesson
     needle = " ".join(wanted.split()).casefold()
     if not needle:
         return
-    for index, block in enumerate(script.blocks):
-        if progress.closed_by(index) is not None and script.gives_away(index):
-            continue
-        text = " ".join(words_of(block).split())
+    shown = [(-1, " ".join((lesson.title, lesson.summary, *lesson.objectives)))]
+    shown += [
+        (index, words_of(block))
+        for index, block in enumerate(script.blocks)
+        if progress.closed_by(index) is None or not script.gives_away(index)
+    ]
+    for index, words in shown:
+        text = " ".join(words.split())
         at = text.casefold().find(needle)
         if at >= 0:
             first, last = max(0, at - _BEFORE), at + len(needle) + _AFTER
             excerpt = ("…" if first else "") + text[first:last] + ("…" if last < len(text) else "")
             yield Hit(index, excerpt)
+
+
+def unless_hidden(*lessons: InProgress) -> str:
+    """Ends the sentence that words are nowhere in these lessons: open predictions hide some of their text."""
+    hidden = sum(
+        any(one.script.gives_away(index) for index in range(question.index + 1, question.end))
+        for one in lessons
+        for question in one.script.questions
+        if one.prediction(question) is None
+    )
+    if not hidden:
+        return "."
+    which = "the open prediction" if hidden == 1 else f"one of {hidden} open predictions"
+    return f", unless behind {which}."

@@ -37,6 +37,7 @@ class Here:
     catalog: Catalog
     workspace: Workspace
     warnings: list[str] = field(default_factory=list)
+    _told: set[str] = field(default_factory=set)
 
     @classmethod
     def load(cls) -> Here:
@@ -57,7 +58,7 @@ class Here:
         """The exercise a command is about: the one named, the one the folder is of, or the last worked on.
 
         Raises:
-            NotFoundError: there is no such exercise, or none was started.
+            NotFoundError: there is no such exercise, or none was started, or several and nothing tells which.
         """
         if wanted is not None:
             # Completion of a folder name leaves a separator at its end.
@@ -73,11 +74,16 @@ class Here:
                     f"which is {self.catalog.place_of(before)} now."
                 )
             return chosen
-        started = self.workspace.started()
-        for name in (self._folder_name(), self._last_worked_on(), started[0] if len(started) == 1 else ""):
+        there = self.workspace.begun()
+        begun = [one.id for one in self._every() if one.id in there]
+        for name in (self._folder_name(), self._last_worked_on(), begun[0] if len(begun) == 1 else ""):
             if name in self._known:
                 return self.catalog.exercise(name)
-        raise self.nothing_started()
+        if not begun:
+            raise self.nothing_started()
+        problem = f"There are several exercises here, and none was worked on last: {', '.join(begun)}."
+        fix = f"Name one, as in `course check {begun[0]}`, or change into its folder."
+        raise NotFoundError(problem, help=fix, code="several_started")
 
     def of_folder(self) -> Exercise | None:
         """The exercise or warm-up that the current folder is of."""
@@ -97,8 +103,10 @@ class Here:
     def started(self) -> tuple[Exercise, ...]:
         """The exercises that have been started, in the order they are done, and then the warm-ups."""
         names = set(self.workspace.started())
-        every = (*self.catalog.exercises(), *self.catalog.warm_ups())
-        return tuple(one for one in every if one.id in names)
+        return tuple(one for one in self._every() if one.id in names)
+
+    def _every(self) -> tuple[Exercise, ...]:
+        return *self.catalog.exercises(), *self.catalog.warm_ups()
 
     def misnamed(self, exercise: Exercise) -> str:
         """A file beside the student's whose name differs in capitals only; "" if there is none."""
@@ -176,16 +184,24 @@ class Here:
         """How far the student is with everything, as it is now; raises what ``history`` raises."""
         return Standing(self.workspace, self.catalog.syllabus.split)
 
-    def record(self, kind: str, subject: str, data: dict[str, object]) -> None:
-        """Note an event; where that fails, the command goes on and says so."""
+    def record(self, kind: str, subject: str, data: dict[str, object]) -> bool:
+        """Note an event; where that fails, give False, and the command goes on and says so."""
         recorder = Recorder(self.workspace.store)
         recorder(kind, subject, data)
-        self.warnings += [recorder.trouble] if recorder.trouble else []
+        if recorder.trouble and recorder.trouble not in self.warnings:
+            self.warnings.append(recorder.trouble)
+        return recorder.kept
+
+    def tell(self) -> None:
+        """Say what was not recorded, each sentence once."""
+        for warning in dict.fromkeys(self.warnings):
+            if warning not in self._told:
+                current().warn(warning)
+        self._told.update(self.warnings)
 
     def answer(self, reply: Envelope) -> int:
         """End a command: say what was not recorded, print the object of ``--json``, give the exit code."""
-        for warning in self.warnings:
-            current().warn(warning)
+        self.tell()
         return current().answer(reply)
 
     def _folder_name(self) -> str:

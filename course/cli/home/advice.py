@@ -135,7 +135,7 @@ def why(catalog: Catalog, step: str) -> str:
     """What a step is, in words."""
     _, name, *rest = step.split()
     if name == "check":
-        return f"the {'small task' if rest[0] in catalog.warm_up_ids() else 'exercise'} you started"
+        return f"the {'small task' if rest[0] in catalog.warm_up_ids() else 'exercise'} where you left off"
     return _WHY.get(name, "")
 
 

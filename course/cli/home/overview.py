@@ -216,7 +216,9 @@ def _inside(console: Console, here: Here) -> int:
         console.table(("Exercise", "No.", "State", "Score"), rows)
     if here.workspace.version != catalog.version:
         versions = f"The course is at version {catalog.version}, this workspace at {here.workspace.version}"
-        console.note(f"{versions}: course update --dry-run shows what is new.")
+        newer = here.workspace.is_newer(catalog.version)
+        advice = "install the newer course" if newer else "course update --dry-run shows what is new"
+        console.note(f"{versions}: {advice}.")
     if objectives:
         console.note("To play with: course sandbox")
     if ahead:
@@ -393,7 +395,7 @@ class Learning:
     def _revisit(self) -> Iterable[replies.Revisit]:
         why: dict[str, list[str]] = {}
         for one in self.mistakes:
-            if one.mended_at is None:
+            if one.named:
                 why.setdefault(one.read, []).append(f"{one.task} in {one.exercise}: {one.diagnosis}")
         said = self.predictions.each if self.predictions is not None else ()
         wrong = Counter(each.section for each in said if each.judged == "wrong" and each.section)
@@ -439,7 +441,7 @@ def _reasons(learning: Learning, section: str) -> str:
     """Why to read a section again: the functions with open mistakes, by exercise, and wrong predictions."""
     tasks: dict[str, list[str]] = {}
     for one in learning.mistakes:
-        if one.mended_at is None and one.read == section and one.task not in tasks.get(one.exercise, ()):
+        if one.named and one.read == section and one.task not in tasks.get(one.exercise, ()):
             tasks.setdefault(one.exercise, []).append(one.task)
     reasons = [f"{exercise}: {', '.join(names)}" for exercise, names in tasks.items()]
     said = learning.predictions.each if learning.predictions is not None else ()
@@ -449,8 +451,8 @@ def _reasons(learning: Learning, section: str) -> str:
     return "; ".join(reasons)
 
 
-#: So many mistakes that are open and so many that are mended are shown, the newest of each.
-_OPEN, _MENDED = 5, 3
+#: So many mistakes that checks still name and so many others are shown, the newest of each.
+_NAMED, _PAST = 5, 3
 
 
 def _show_mistakes(console: Console, what: str, done: str, mistakes: Sequence[replies.MistakeState]) -> None:
@@ -459,11 +461,12 @@ def _show_mistakes(console: Console, what: str, done: str, mistakes: Sequence[re
         return
     fixed = sum(one.mended_at is not None for one in mistakes)
     console.heading(what, f"{len(mistakes)} {done}, {fixed} fixed")
-    shown = [one for one in mistakes if not one.mended_at][-_OPEN:]
-    shown += [one for one in mistakes if one.mended_at][-_MENDED:]
+    shown = [one for one in mistakes if one.named][-_NAMED:]
+    shown += [one for one in mistakes if not one.named][-_PAST:]
     for one in (one for one in mistakes if one in shown):
         seen = f"in {one.runs} checks since" if one.runs > 1 else "seen"
-        state = f"not fixed yet, {seen} {day(one.first_seen)}"
+        state = "not fixed yet" if one.named else "not named any more"
+        state = f"{state}, {seen} {day(one.first_seen)}"
         state = f"fixed {day(one.mended_at)}" if one.mended_at else state
         # A diagnosis of a check's own code has no words here; its name is made of words.
         words = one.looks_like or f"{one.diagnosis.replace('_', ' ').capitalize()}."

@@ -160,8 +160,9 @@ class MistakeState(msgspec.Struct, frozen=True, kw_only=True):
     """A mistake that checks recognised. ``read`` is where it is explained, as "lesson#section" or "lesson".
 
     ``given`` is True in a program that is handed out with faults.
-    ``mended_at`` is None while a check that showed it has not passed since. ``looks_like`` names the
-    exception if the code is RAISED; else it is "" where the exercise keeps no words for the code.
+    ``mended_at`` is None while a check that showed it has not passed since; ``named`` is True while the
+    newest run of such a check shows it. ``looks_like`` names the exception if the code is RAISED; else it is
+    "" where the exercise keeps no words for the code.
     """
 
     exercise: str
@@ -174,11 +175,12 @@ class MistakeState(msgspec.Struct, frozen=True, kw_only=True):
     last_seen: str
     runs: int
     mended_at: str | None
+    named: bool = False
     given: bool = False
 
 
 class Revisit(msgspec.Struct, frozen=True, kw_only=True):
-    """A section to read again: open mistakes point at it, or predictions in it were wrong."""
+    """A section to read again: mistakes that are still named point at it, or predictions in it were wrong."""
 
     lesson: str
     section: str

@@ -64,6 +64,7 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
         screen.show_mark(console, len(posed))
         return screen.hand_out(console, desk.here, posed, seed, "take")
     attempt = screen.open_or_new(console, desk, seed)
+    desk.here.tell()  # before anything is answered that cannot be kept
     resumed = bool(attempt.answers)
     posed = desk.bank.pose(attempt.seed)
     screen.show_mark(console, len(posed))
@@ -71,7 +72,8 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     if resumed:
         console.line(f"Continuing the attempt you left: {len(attempt.answers)} of {len(posed)} answered.")
     if not _ask_all(console, desk, attempt, posed):
-        console.line("Your attempt is kept: `course quiz take` continues it.")
+        console.line(desk.kept(attempt))
+        desk.here.tell()
         return INTERRUPTED
     return _finish(console, desk, attempt, posed, resumed=resumed)
 
@@ -110,6 +112,7 @@ def _ask_all(console: Console, desk: screen.Desk, attempt: Attempt, posed: Seque
             console.line("This question was answered in another terminal; that answer counts.")
         else:
             answered(attempt, question.question, chosen.id, desk.here.record)
+        desk.here.tell()
     return True
 
 
@@ -209,6 +212,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
             console.line("The rest stays due: `course quiz review` continues with it.")
             return INTERRUPTED
         marked.append(reviewed(question, one.id, seed, desk.here.record))
+        desk.here.tell()
         screen.show_marked(console, marked[-1], number)
     return _end_review(console, desk, seed, marked)
 

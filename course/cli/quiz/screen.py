@@ -15,6 +15,7 @@ from course.cli.frame.here import Here
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.overview import day
 from course.errors import CourseError, UsageError
+from course.printable import counted
 from course.progress.quiz import Attempt, QuizHistory, quiz_history
 from course.quizzing.bank import (
     LETTERS,
@@ -164,11 +165,15 @@ def show_mark(console: Console, total: int) -> None:
 
 
 def ask(console: Console, posed: PosedQuestion, number: int, total: int) -> Choice | None:
-    """Ask one question; None if the student stops or the input ends."""
+    """Ask one question; None if the student stops, by Ctrl-C too, or the input ends."""
     console.blank()
     _show_question(console, posed, number, total)
     while True:
-        typed = console.ask(_PROMPT)
+        try:
+            typed = console.ask(_PROMPT)
+        except KeyboardInterrupt:
+            console.blank()  # ends the line of the prompt
+            return None
         if typed is None or typed.lower() in {"q", "quit"}:
             return None
         if (choice := posed.choice(typed)) is not None:
@@ -391,6 +396,16 @@ class Desk:
         except CourseError as error:
             if (told := f"{error.message} {error.help}") not in self.here.warnings:
                 self.here.warnings.append(told)
+
+    def kept(self, attempt: Attempt) -> str:
+        """How much of an attempt that its student leaves is in the record."""
+        self._read_again()
+        there = next((one for one in self.history.attempts if one.id == attempt.id), None)
+        if there is None:
+            return "Your attempt is not kept."
+        lost = len(attempt.answers) - len(there.answers)
+        asked = f", and asks again what could not be recorded ({counted(lost, 'answer')})" if lost else ""
+        return f"Your attempt is kept: `course quiz take` continues it{asked}."
 
     def reviews(self) -> tuple[Due, ...]:
         """The questions under review, from the record as it is now."""

@@ -25,7 +25,7 @@ from course.progress.history import lesson_events
 from course.progress.store import Event
 from course.reading.cells import CellOutput
 from course.reading.parts import Cell, Question, read_script
-from course.reading.record import JUDGEMENTS, InProgress, Place, find
+from course.reading.record import JUDGEMENTS, InProgress, Place, find, unless_hidden
 
 _ON_WORDS, _STOP = ("", "y", "yes", "n", "next"), ("q", "quit", "no")
 _ON = "Enter goes on"
@@ -69,6 +69,7 @@ class LineReader:
         self._progress = InProgress(self._script, self._events, self._write, catalog.version)
         self._files: dict[int, Path] = {}  # by number of the cell that the student changes in it
         self._bench = Bench(self._progress, self._ran)
+        self._kept = False  # whether the last event was recorded
         self._over = threading.Event()
         self._gave: CellOutput | None = None
         self._does: dict[str, Callable[[str, int], int | None]] = {
@@ -165,9 +166,9 @@ class LineReader:
         if typed.startswith("/"):
             hits = list(find(self._progress, typed[1:]))
             for hit in hits:
-                self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
+                self._say(f"Page {max(1, bisect.bisect_right(self._starts, hit.block))}: {hit.excerpt}")
             if not hits:
-                self._say("Not in this lesson.")
+                self._say(f"Not in this lesson{unless_hidden(self._progress)}")
         elif word in {"1", "2", "3"}:
             self._judge(number, int(word))
         elif word in self._does:
@@ -191,7 +192,7 @@ class LineReader:
         if typed is None or typed.lower() in _STOP[:2]:
             return None
         self._progress.predict(question, typed)
-        self._say("Kept." if typed else "Skipped.")
+        self._say("Skipped." if not typed else "Kept." if self._kept else "Not kept.")
         return number + 1
 
     def _remind(self, number: int) -> None:
@@ -212,7 +213,8 @@ class LineReader:
             self._say("No prediction is answered on this page.")
             return
         self._progress.judge(question, JUDGEMENTS[typed - 1])
-        self._say(f"Kept: {('right', 'nearly right', 'wrong')[typed - 1]}.")
+        kept = "Kept" if self._kept else "Not kept"
+        self._say(f"{kept}: {('right', 'nearly right', 'wrong')[typed - 1]}.")
 
     # -- cells -----------------------------------------------------------------------------------------
 
@@ -347,7 +349,8 @@ class LineReader:
 
     def _write(self, kind: str, subject: str, data: Mapping[str, object]) -> None:
         if self._here is not None:
-            self._here.record(kind, subject, dict(data))
+            self._kept = self._here.record(kind, subject, dict(data))
+            self._here.tell()
 
 
 def _page(events: Sequence[Event], block: int, starts: Sequence[int]) -> int:

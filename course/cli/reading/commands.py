@@ -130,8 +130,8 @@ def lesson(
         step += " --page"
     if paged:
         _say_unkept(console, here)
-    for warning in here.warnings if here else ():
-        console.warn(warning)
+    if here is not None:
+        here.tell()
     for picture in shown.pictures:
         console.note(f"Wrote {picture}")
     console.next(step)
@@ -193,7 +193,7 @@ def _read_on_screen(
     app = ReaderApp(catalog, chosen.id, section, here.workspace if here else None, Drawer())
     app.play()
     last, lesson = app.page.progress, app.page.progress.script.lesson
-    for warning in (here.warnings if here else []) + ([app.page.trouble] if app.page.trouble else []):
+    for warning in dict.fromkeys(filter(None, (*(here.warnings if here else ()), app.page.trouble))):
         console.warn(warning)
     _say_unkept(console, here)
     console.next(_after(here, lesson, read=True) if last.read else f"course lesson {lesson.id}")

@@ -163,7 +163,7 @@ def pairs(settings: Sequence[str]) -> dict[str, object]:
             number = float(value)
         except ValueError:
             problem = f"--set {pair}: {value[:40]!r} is not a number."
-            raise UsageError(problem, help=f"For example --set {key}=1.", code="bad_parameter") from None
+            raise UsageError(problem, help="For example --set gravity=1.62.", code="bad_parameter") from None
         found[key.strip()] = int(number) if key == "seed" and number.is_integer() else number
     return found
 

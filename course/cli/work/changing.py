@@ -17,7 +17,7 @@ from course.cli.frame.replies import Backup, FileReply, NextStep
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Change, Diff, Reset, Start, Update
-from course.errors import NotFoundError, UsageError
+from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.handed_in.limits import read_notebook
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.printable import counted
@@ -101,6 +101,10 @@ def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would b
     """
     console, here = current(), Here.load()
     old, new = here.workspace.version, here.catalog.version
+    if here.workspace.is_newer(new):
+        problem = f"{here.workspace.root} is at version {old}, and the installed course is older: {new}."
+        fix = f"Install version {old} of the course or a later one; nothing here was changed."
+        raise MissingCapabilityError(problem, help=fix, code="workspace_newer")
     changes = tuple(_updates(here, dry_run=dry_run))
     was, put = ("would be", "would be put") if dry_run else ("was", "is")
     for change in changes:

@@ -198,7 +198,6 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
     pass_ = "passes" if complete == 1 else "pass"
     said = f"{complete} of {counted(len(results), 'exercise')} {pass_} every public check."
     console.line((said, "bold"))
-    for warning in dict.fromkeys(here.warnings):
-        console.warn(warning)
+    here.tell()
     worst = max(result.exit_code for result in results)
     return console.answer(CheckAll(exit_code=worst, results=tuple(results)))

@@ -132,8 +132,9 @@ def work_of(
     """
     chosen: list[StudentWork] = []
     left_out: list[FileReply] = []
-    started = [one for one in here.started() if one.is_warm_up] if warm_ups else ()
-    for exercise in only or (*here.catalog.exercises(), *started):
+    begun = here.workspace.begun() if warm_ups else ()
+    small = (one for one in here.catalog.warm_ups() if one.id in begun)
+    for exercise in only or (*here.catalog.exercises(), *small):
         there = here.workspace.path(exercise.place, exercise.module).exists()
         module = _module(here, exercise) if there else None
         notebook, why_not = _handed_in_notebook(here, exercise)

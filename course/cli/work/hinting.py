@@ -68,7 +68,7 @@ def give_hint(
 def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | None) -> Hint:
     """Decide what to show, and record it if it is new; arguments as of ``give_hint``."""
     history = here.history(exercise)
-    started = exercise.id in here.workspace.started()
+    started = exercise.id in here.workspace.begun()
     again = NextStep(f"course check {exercise.id}" if started else f"course start {exercise.id}")
     task = _task(exercise, history, wanted)
     last = history.last

@@ -21,7 +21,6 @@ import msgspec
 
 from course.catalog.reading import Document, LineMap
 from course.errors import ContentError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.printable import one_line
 from course.sandbox.scene.model import Part, Scene
 from course.sandbox.scene.rules import check_scene
 from course.sandbox.world.engine import versions
@@ -40,8 +39,6 @@ EVERY = 240
 _SLICE = 16
 #: Steps that a recording may hold; a day at 1/240 s is 20.7 million.
 _MOST_TICKS = 100_000_000
-#: Characters of what a parser says, which may quote the whole file.
-_MOST_SAID = 200
 #: The methods that a line of a recording may call.
 _INPUTS = {
     *("reset", "set", "grab", "drag", "release", "throw", "spawn"),
@@ -226,6 +223,11 @@ class Difference(msgspec.Struct, frozen=True, kw_only=True):
     versions: dict[str, tuple[str, str]]
 
 
+#: What to do about a file that is no recording, and about a damaged one.
+_RECORD = "Record one with `course sandbox play SCENE --record FILE`."
+_AGAIN = "Take a copy of it, or record it again: `course sandbox play SCENE --record FILE`."
+
+
 def read(path: Path) -> Replay:
     """A recording.
 
@@ -248,10 +250,11 @@ def read(path: Path) -> Replay:
         try:
             decoded.append(decoder.decode(line))
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-            why = one_line(str(error))[:_MOST_SAID]
             if number == 1:
-                raise UsageError(f"{path} is not a recording: {why}.", code="bad_recording") from error
-            raise IntegrityError(f"{path}:{number} is damaged: {why}.", code="damaged_recording") from error
+                problem = f"{path} is not a recording: its first line is not that of one."
+                raise UsageError(problem, help=_RECORD, code="bad_recording") from error
+            problem = f"{path}:{number} is damaged: the file was cut off there, or changed."
+            raise IntegrityError(problem, help=_AGAIN, code="damaged_recording") from error
     return _checked(path, decoded)
 
 
@@ -317,22 +320,25 @@ def _checked(path: Path, lines: list[Line]) -> Replay:
         form = f"it begins with {head.format[:40]}" if isinstance(head, Head) else "its first line is no head"
         raise UsageError(
             f"{path} is not a recording that this program knows ({form}).",
-            help="Record one with `course sandbox play SCENE --record FILE`.",
+            help=_RECORD,
             code="bad_recording",
         )
     if not isinstance(lines[-1], End):
-        raise IntegrityError(f"{path} has no end; it was cut off.", code="damaged_recording")
+        problem = f"{path} has no end; it was cut off."
+        raise IntegrityError(problem, help=_AGAIN, code="damaged_recording")
     inputs = tuple(line for line in lines if isinstance(line, Input))
     hashes = tuple(line for line in lines if isinstance(line, Hash | End))
     ticks = [line.tick for line in lines[1:] if not isinstance(line, Head)]
     ends = sum(isinstance(line, End) for line in lines)
     if len(ticks) < len(lines) - 1 or ends > 1 or ticks != sorted(ticks) or ticks[0] < 0:
-        raise IntegrityError(f"{path}: its steps are out of order.", code="damaged_recording")
+        problem = f"{path}: its steps are out of order."
+        raise IntegrityError(problem, help=_AGAIN, code="damaged_recording")
     unknown = {line.what for line in inputs} - _INPUTS
     hashed = max((line.tick for line in hashes[:-1]), default=0)
     # A run that goes on for long behind its last hash is not one that was recorded.
     if unknown or lines[-1].tick > min(hashed + max(head.every, 1), _MOST_TICKS):
-        raise IntegrityError(f"{path} asks for what no recording holds.", code="damaged_recording")
+        problem = f"{path} asks for what no recording holds."
+        raise IntegrityError(problem, help=_AGAIN, code="damaged_recording")
     return Replay(path=path, head=head, inputs=inputs, hashes=hashes)
 
 

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterator, Mapping
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -336,7 +337,7 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
         question, unit: as the scene asks, with the numbers of this run.
         guess: the student's; None if none was made.
         simulation: what the run gave; "nan" if what was asked for did not happen.
-        guess_right: the guess is close to theory or simulation, whichever is nearer; None without a guess.
+        guess_right: the guess is theory or simulation, but for rounding; None without a guess.
         agree: theory and simulation are as close as the scene says they should be.
         why: the reasoning behind the formula, with the numbers of this run.
     """
@@ -374,13 +375,9 @@ def compare(
         UsageError: the formula, or one in the texts, has no value for these parameters.
     """
 
-    def is_near(answer: float) -> bool:
-        most = max(asked.near * abs(answer), asked.near_abs, 1e-12)
-        return guess is not None and abs(guess - answer) <= most
-
     theory = evaluate(asked.theory, values)
     agree = abs(simulation - theory) <= max(asked.agrees * abs(theory), asked.agrees_abs)
-    right = None if guess is None else is_near(theory) or is_near(simulation)
+    right = None if guess is None else _is_right(guess, theory) or _is_right(guess, simulation)
     return Comparison(
         question=fill(asked.question, values),
         unit=asked.unit,
@@ -408,9 +405,26 @@ def _verdict(
         )
     if guess is None:
         return text
+    answer = simulation if abs(guess - simulation) < abs(guess - theory) else theory
+    by = "" if agree else f" by the {'theory' if answer == theory else 'simulation'}"
     if right:
-        return f"Your guess is right. {text}"
-    off = guess - theory
-    if theory * guess > 0.0:
-        return f"Your guess is {100 * abs(off / theory):.0f} % too {'high' if off > 0 else 'low'}. {text}"
-    return f"Your guess is off by {abs(off):.3g} {asked.unit}. {text}"
+        return f"Your guess is right{by}. {text}"
+    is_close = abs(guess - answer) <= max(asked.near * abs(answer), asked.near_abs)
+    answer = answer if is_close else theory
+    off = guess - answer
+    said = f"off by {abs(off):.3g} {'' if asked.unit == '1' else asked.unit}".rstrip()
+    if answer * guess > 0.0:
+        percent = 100 * abs(off / answer)
+        said = f"{percent:.{0 if percent >= 1 else 1}f} % too {'high' if off > 0 else 'low'}"
+    return f"Your guess is {f'close{by}: ' if is_close else ''}{said}. {text}"
+
+
+#: However few digits a guess has, it is right only this close to the answer, as a fraction of it.
+_ROUNDED = 0.02
+
+
+def _is_right(guess: float, answer: float) -> bool:
+    """Whether a guess is the answer, rounded to the digits that it has."""
+    places = Decimal(repr(guess)).normalize().as_tuple().exponent
+    half = 0.5 * 10.0 ** min(int(places), 0)
+    return abs(guess - answer) <= max(min(half, _ROUNDED * abs(answer)), 1e-12)

@@ -212,7 +212,7 @@ class Prediction(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         probe: what answers it.
         theory: a formula for it in parameters, ``g``, ``step`` and ``body.mass`` and the like.
         why: where the formula comes from, and the usual reasoning behind a wrong guess.
-        near: a guess this close to the simulation counts as right; a fraction of the answer.
+        near: a guess this close to theory or simulation counts as close; a fraction of the answer.
         near_abs: the same as a number, for answers near zero.
         agrees: how far simulation and theory may be apart, as a fraction of the theory.
         agrees_abs: the same as a number.

@@ -208,18 +208,24 @@ def _retold(
     check: CheckResult, failure: CheckFailed, story: Story, task: str, culprits: list[str]
 ) -> CheckResult:
     message, advice = failure.bare
-    if culprits:
-        # Of several, which one this check's number comes from is not known.
-        names = " and ".join(", ".join(f"`{name}`" for name in culprits).rsplit(", ", 1))
-        are, them = ("are", "them") if len(culprits) > 1 else ("is", "that")
-        message = f"{message} `{task}` calls your {names}, which {are} wrong: fix {them} first."
-        advice = f"Check again when {names} {are} right; what is left then is `{task}`'s own."
-        return msgspec.structs.replace(check, diagnosis=CASCADE, message=message, help=advice)
     diagnosis: Diagnosis | None = None if check.id in story.bare else story.diagnosis
-    if diagnosis is None:
-        return msgspec.structs.replace(check, diagnosis=None, message=message, help=advice)
-    message, advice = said_once(message, diagnosis.looks_like), diagnosis.advice or advice
-    return msgspec.structs.replace(check, diagnosis=diagnosis.code, message=message, help=advice)
+    if diagnosis is not None:
+        message, advice = said_once(message, diagnosis.looks_like), diagnosis.advice or advice
+    code = diagnosis.code if diagnosis is not None else None
+    if culprits:
+        # Whether this check's number comes from one of them is not known: they may be right where it calls.
+        code = CASCADE
+        names = " and ".join(", ".join(f"`{name}`" for name in culprits).rsplit(", ", 1))
+        are = "are" if len(culprits) > 1 else "is"
+        calls, left = f"`{task}` calls your {names}, in which other checks found a mistake.", ""
+        if diagnosis is not None:
+            calls = (
+                f"That may come from your {names}, which `{task}` calls: other checks found a mistake there."
+            )
+            left = f" If this is left: {advice}"
+        message = f"{message} {calls}"
+        advice = f"Check again when {names} {are} right; what is left then is `{task}`'s own.{left}"
+    return msgspec.structs.replace(check, diagnosis=code, message=message, help=advice)
 
 
 def _odd(value: Any) -> bool:

@@ -13,7 +13,8 @@ from course.catalog.load import Catalog
 from course.catalog.questions import read_questions
 from course.cli.frame.console import Console
 from course.cli.quiz import screen
-from course.errors import IntegrityError
+from course.errors import IntegrityError, MissingCapabilityError
+from course.progress.store import Store
 from course.quizzing.bank import Bank, mark
 
 SEED = 7
@@ -148,11 +149,37 @@ def test_an_attempt_that_was_stopped_goes_on_where_it_was(quiz, bank, types, sto
     types(*letters[:2], *([stop] if stop else []))
     stopped = quiz("take", "--seed", str(SEED))
     assert stopped.code == 130
+    assert "Your attempt is kept: `course quiz take` continues it." in stopped.out
     assert stopped.err.strip().endswith("Interrupted.")
     types(*letters[2:])
     ran = quiz("take").ends(0, "2 of 5 answered", "Question 3 of 5")
     assert "Question 2 of 5" not in ran.out
     assert "5 of 5 right" in ran.out
+
+
+def test_what_cannot_be_recorded_is_said_before_the_first_question_and_once(quiz, bank, types, tmp_path):
+    state = tmp_path / "mine" / ".course"
+    state.rmdir()
+    state.write_text("no folder", encoding="utf-8")
+    types(*list(key(bank).values())[:2], "q")
+    ran = quiz("take", "--seed", str(SEED)).ends(130, "Your attempt is not kept.")
+    assert ran.err.count("This was not recorded: ") == 1
+    assert "is kept" not in ran.out
+
+
+def test_an_attempt_that_is_left_says_which_answers_were_not_recorded(quiz, bank, types, monkeypatch):
+    append = Store.append
+
+    def once_full(store, kind, *rest):
+        if kind == "quiz-answer" and store.events(kind):
+            raise MissingCapabilityError("The disk is full.", help="Free some space.", code="not_writable")
+        append(store, kind, *rest)
+
+    monkeypatch.setattr(Store, "append", once_full)
+    types(*list(key(bank).values())[:3], "q")
+    ran = quiz("take", "--seed", str(SEED))
+    ran.ends(130, "continues it, and asks again what could not be recorded (2 answers).")
+    assert ran.err.count("This was not recorded: The disk is full.") == 1
 
 
 @pytest.mark.parametrize("there", [1, 5])

@@ -100,6 +100,14 @@ def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path):
     assert "restitution of the pair is 0." in " ".join(out.split())
 
 
+def test_a_value_that_is_no_number_gets_an_example_that_works(tmp_path):
+    ran = sandbox("play", "head-on", "--set", "g=abc", cwd=tmp_path, code=2)
+    assert "'abc' is not a number" in ran.stderr
+    assert "--set g=1" not in ran.stderr
+    assert "--set gravity=1.62" in ran.stderr
+    sandbox("play", "head-on", "--set", "gravity=1.62", cwd=tmp_path)
+
+
 def test_describe_tells_the_run(tmp_path):
     out = sandbox("play", "restitution-row", "--describe", cwd=tmp_path).stdout
     assert "0.45 s: ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in out

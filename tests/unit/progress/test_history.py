@@ -227,6 +227,23 @@ def test_what_mends_no_mistake(later, found):
     assert {one.mended for one in mistakes} == {None}
 
 
+@pytest.mark.parametrize(
+    ("later", "named"),
+    [
+        ([("order", "fail", None), ("energy", "fail", "SIGN")], False),
+        ([("order", "fail", "SWAPPED"), ("energy", "pass", None)], True),
+        ([("order", "fail", None)], True),
+        ([("order", "skip", None), ("energy", "skip", None)], True),
+    ],
+    ids=["all fail otherwise", "one shows it again", "one was not run", "none could run"],
+)
+def test_a_mistake_is_named_while_the_newest_run_of_a_check_of_it_shows_it(later, named):
+    first = run(1, ("order", "fail", "SWAPPED"), ("energy", "fail", "SWAPPED"))
+    one, *_ = mistakes_of([first, run(2, *later)])
+    assert one.named == named
+    assert one.mended is None
+
+
 def test_work_to_do_and_what_follows_from_a_mistake_are_none():
     codes = ("NOT_IMPLEMENTED", "MISSING_FUNCTION", "CALLS_A_WRONG_FUNCTION")
     assert mistakes_of([run(1, *((code, "fail", code) for code in codes))]) == ()

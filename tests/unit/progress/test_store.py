@@ -171,3 +171,25 @@ def test_half_a_surrogate_is_kept_as_a_question_mark(store):
     """A page can send one in a prediction, and a terminal in a cell; it ended what wanted to note it."""
     store.append("prediction", "lesson", {"text": "\ud83d and \U0001f600", "\udce9": 1})
     assert store.events("prediction")[-1].data == {"text": "? and \U0001f600", "?": 1}
+
+
+def test_a_workspace_that_was_moved_meanwhile_gets_no_second_record_in_its_old_place(tmp_path):
+    root = tmp_path / "mine"
+    with pytest.raises(MissingCapabilityError, match=r"mine is no longer there: it was moved") as raised:
+        Store(root / ".course" / "progress.sqlite").append("start", "doubling")
+    assert raised.value.code == "workspace_gone"
+    assert not root.exists()
+
+
+def test_on_a_full_disk_the_advice_is_to_free_some_space(store, monkeypatch):
+    store.append("start", "doubling")
+    prepare = Store._prepare
+
+    def full(self, database, *, create):
+        prepare(self, database, create=create)
+        database.execute("PRAGMA max_page_count = 1")
+
+    monkeypatch.setattr(Store, "_prepare", full)
+    with pytest.raises(MissingCapabilityError) as raised:
+        store.append("check", "doubling", {"padding": "x" * 100_000})
+    assert raised.value.help.startswith("Free some space")

@@ -121,3 +121,15 @@ def test_a_folder_that_cannot_be_written_is_said_so(workspace):
             workspace.give("doubling", "doubling.py", b"stub")
     finally:
         workspace.root.chmod(0o755)
+
+
+def test_nothing_is_put_where_a_workspace_was_before_it_was_moved(workspace, tmp_path):
+    workspace.root.rename(tmp_path / "moved")
+    for act in (
+        lambda: workspace.give("doubling", "doubling.py", b"x = 1\n"),
+        lambda: workspace.backup(tmp_path / "moved" / "course.toml", "reset"),
+    ):
+        with pytest.raises(MissingCapabilityError) as raised:
+            act()
+        assert raised.value.code == "workspace_gone"
+    assert not workspace.root.exists()

@@ -11,7 +11,17 @@ from course.catalog.models import Lesson
 from course.progress.history import lesson_events
 from course.progress.store import Event, Store
 from course.reading.parts import read_script, words_of
-from course.reading.record import InProgress, Layout, Place, Row, Writer, find, predictions_of, tally
+from course.reading.record import (
+    InProgress,
+    Layout,
+    Place,
+    Row,
+    Writer,
+    find,
+    predictions_of,
+    tally,
+    unless_hidden,
+)
 
 TEXT = """+++
 ignored = true
@@ -203,8 +213,18 @@ def test_search_does_not_look_behind_an_open_prediction(lesson):
         return [hit.block for hit in find(progress, "  four ")]
 
     assert hits() == []
-    progress.predict(script.questions[0], "")
+    assert unless_hidden(progress) == ", unless behind the open prediction.", "the other one hides nothing"
+    assert unless_hidden(progress, progress) == ", unless behind one of 2 open predictions."
+    for question in script.questions:
+        progress.predict(question, "")
     assert hits() == [script.questions[0].answer]
+    assert unless_hidden(progress) == "."
+
+
+def test_search_looks_at_what_stands_above_a_lesson(lesson):
+    progress = InProgress(read_script(lesson))
+    for wanted in (lesson.title, lesson.summary[-12:], lesson.objectives[-1]):
+        assert [hit.block for hit in find(progress, wanted)][:1] == [-1]
 
 
 def test_minutes_left_fall_from_all_to_none(lesson):

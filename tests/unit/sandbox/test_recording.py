@@ -131,6 +131,20 @@ def test_what_a_recording_cannot_do_is_named_with_the_file_and_the_step(tmp_path
             replay(read(path))
 
 
+def test_a_cut_file_and_a_foreign_one_are_told_with_what_to_do(tmp_path):
+    path, whole = tmp_path / "run.jsonl", random_run(7, turns=4)
+    for data, said in (
+        (b"time,x,y\n", "is not a recording: its first line"),
+        (whole[:20], "is not a recording: its first line"),
+        (whole[:-9], "is damaged: the file was cut off there"),
+        (whole[: whole.rindex(b"\n", 0, -1) + 1], "has no end; it was cut off"),
+    ):
+        path.write_bytes(data)
+        with pytest.raises((UsageError, IntegrityError), match=said) as raised:
+            read(path)
+        assert "course sandbox play SCENE --record FILE" in raised.value.help
+
+
 def test_a_scene_that_a_recording_spoilt_is_refused_with_its_place(tmp_path):
     path = tmp_path / "run.jsonl"
     head, _, rest = random_run(7, turns=4).partition(b"\n")

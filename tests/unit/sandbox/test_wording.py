@@ -92,6 +92,31 @@ def test_the_jump_of_the_bullet_is_that_of_one_step_whatever_the_step(step, spee
     assert done.comparison.agree
 
 
+@pytest.mark.parametrize(
+    ("guess", "verdict"),
+    [
+        (1.621, "right."),
+        (1.62, "right."),
+        (1.6, "right."),
+        (1.46, "close: 10 % too low."),
+        (1.7, "close: 5 % too high."),
+        (2.0, "23 % too high."),
+        (-1.6, "off by 3.22 m/s."),
+        (0.0, "off by 1.62 m/s."),
+    ],
+)
+def test_a_guess_is_right_only_if_it_is_the_answer_rounded_to_its_digits(guess, verdict):
+    asked = msgspec.structs.replace(
+        choose("newtons-cradle").scene.prediction, question="?", why=".", theory="1.62129", agrees=1e-3
+    )
+    said = compare(asked, 1.6213, {}, guess)
+    assert said.verdict == f"Your guess is {verdict} Theory and simulation agree."
+    assert said.guess_right == (verdict == "right.")
+    assert compare(asked, 1.9, {}, 1.9).verdict.startswith(
+        "Your guess is right by the simulation. Theory and"
+    )
+
+
 @pytest.mark.parametrize("speed", [0.5, 3.0, 12.0])
 def test_the_momentum_of_the_break_is_read_before_a_cushion_takes_some(speed):
     comparison = run(choose("billiards-break", {"speed": speed})).comparison

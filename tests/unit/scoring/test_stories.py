@@ -113,7 +113,23 @@ def test_the_textbooks_reduced_mass_costs_the_walls_only_and_what_calls_it_is_to
     )
     assert codes(found["resolve"]) == {"CALLS_A_WRONG_FUNCTION"}
     for check in found["resolve"]:
-        assert "`resolve` calls your `impulse_1d`, which is wrong: fix that first." in check.message
+        assert "`impulse_1d`" in check.message
+        assert "other checks found a mistake" in check.message
+
+
+def test_what_calls_a_wrong_function_is_told_its_own_mistake_too(session):
+    swapped = """
+def resolve(ma, mb, va, vb, normal, restitution):
+    normal = np.asarray(normal)
+    j = impulse_1d(ma, mb, (np.asarray(va) - vb) @ normal, 0.0, restitution)
+    return va + j / ma * normal, vb - j / mb * normal
+"""
+    found = failed(session, REDUCED_MASS + swapped)
+    assert codes(found["resolve"]) == {"CALLS_A_WRONG_FUNCTION"}
+    for check in found["resolve"]:
+        assert "The impulse has the wrong sign" in check.message
+        assert "That may come from your `impulse_1d`, which `resolve` calls" in check.message
+        assert "If this is left: J is positive where the bodies approach." in check.help
 
 
 def test_of_two_wrong_functions_that_one_calls_both_are_told_first(session):
@@ -134,10 +150,8 @@ def resolve(ma, mb, va, vb, normal, restitution):
     found = failed(session, "\n_plane = detect_sphere_plane\n" + both)
     assert codes(found["resolve"]) == {"CALLS_A_WRONG_FUNCTION"}
     for check in found["resolve"]:
-        calls = (
-            "`resolve` calls your `detect_sphere_plane` and `impulse_1d`, which are wrong: fix them first."
-        )
-        assert calls in check.message
+        assert "your `detect_sphere_plane` and `impulse_1d`" in check.message
+        assert check.help.startswith("Check again when `detect_sphere_plane` and `impulse_1d` are right;")
 
 
 def test_numbers_of_its_own_are_nothing_that_is_kept(session):

@@ -14,7 +14,7 @@ from course.cli.reading.screen.page import Item, Page
 from course.cli.reading.screen.running import Drawer
 from course.full_screen import FullScreenApp, TextOverlay
 from course.progress.workspace import Workspace
-from course.reading.record import JUDGEMENTS, Place, find
+from course.reading.record import JUDGEMENTS, Place, find, unless_hidden
 
 #: How often the last line and running work are looked at, in s.
 _TICK = 0.25
@@ -286,11 +286,14 @@ class ReaderApp(FullScreenApp):
     def _search(self, wanted: str) -> list[tuple[str, str]]:
         self._wanted = wanted
         here = self.page.progress.script.lesson.id
-        return [
+        names = (here, *(other for other in self.catalog.lesson_ids() if other != here))
+        lessons = {name: self.page.in_progress(name) for name in names}
+        hits = [
             (f"lesson:{name}:{hit.block}", f"{name}: {hit.excerpt}")
-            for name in (here, *(other for other in self.catalog.lesson_ids() if other != here))
-            for hit in find(self.page.in_progress(name), wanted)
+            for name, lesson in lessons.items()
+            for hit in find(lesson, wanted)
         ]
+        return hits or [("", f"In no lesson{unless_hidden(*lessons.values())}")]
 
     def action_next_hit(self) -> None:
         if not self._wanted:
@@ -300,7 +303,8 @@ class ReaderApp(FullScreenApp):
         blocks = [hit.block for hit in find(self.page.progress, self._wanted)]
         following = [block for block in blocks if block > place.block] or blocks
         if not following:
-            self.say(f"{self._wanted!r} is not in this lesson; / searches all lessons.")
+            nowhere = f"{self._wanted!r} is not in this lesson{unless_hidden(self.page.progress)}"
+            self.say(f"{nowhere} / searches all lessons.")
             return
         self.page.show(self.page.book.layout.row(Place(following[0])))
 

@@ -121,7 +121,7 @@ class Find(_Chooser):
     """Words to look for, and where they are.
 
     Args:
-        search: (key, what to show) of each hit for some words.
+        search: (key, what to show) of each hit for some words; one without a key says that there is none.
     """
 
     below = "Enter: look   Escape: back"
@@ -147,12 +147,10 @@ class Find(_Chooser):
         chooser = self.query_one(OptionList)
         chooser.clear_options()
         chooser.display = True
-        if not hits:
-            chooser.add_option(Option("In no lesson.", disabled=True))
-            return
-        chooser.add_options([Option(Text(words), id=key) for key, words in hits])
-        chooser.highlighted = 0
-        chooser.focus()
+        chooser.add_options([Option(Text(words), id=key or None, disabled=not key) for key, words in hits])
+        if any(key for key, _ in hits):
+            chooser.highlighted = 0
+            chooser.focus()
 
 
 class _Code(InOrder, TextArea):

@@ -88,7 +88,7 @@ def answer(page: Page, question: Question, text: str) -> None:
     page.settle()
     cells = [c for c in script.shown_cells if question.index < c.index < question.end]
     run = " r: run" if cells else ""
-    page.reader.say(f"{'Kept' if text else 'Skipped'}. The answer is open.{run}")
+    page.reader.say(f"{page.kept() if text else 'Skipped.'} The answer is open.{run}")
 
 
 class AnswerItem(Item):

@@ -46,6 +46,8 @@ _LINK_HERE = Style(reverse=True)
 _SETTLED = 1.0
 #: The rest of a lesson is laid out this long after its first screen, in s.
 _REST = 0.02
+#: So long is waited for the word that a prediction is recorded, in s.
+_PATIENCE = 0.5
 _SAID = 2  # rows of what stands below a lesson: a rule, and that it was read
 _ALL_KEYS = "? keys"
 #: The keys where nothing else is at hand.
@@ -198,6 +200,7 @@ class Page(Widget):
         self.practice = Practice(catalog, workspace)
         self._store = workspace.store if workspace is not None else None
         self._write = Writer(self._store)
+        self._warned = False  # that something was not recorded
         self._unread = ""  # why the record could not be read
         self._items_of, self._keys_of = items_of, keys_of
         self.progress: InProgress
@@ -227,6 +230,13 @@ class Page(Widget):
     def trouble(self) -> str:
         """Why something was not recorded, or could not be read; empty if all was."""
         return self._write.trouble or self._unread
+
+    def kept(self) -> str:
+        """Whether what was added to the record last is in it, for its reader."""
+        if self._write.kept(_PATIENCE):
+            return "Kept."
+        self._warned = bool(self._write.trouble)
+        return "Not kept: q says why." if self._warned else "Not kept yet." if self._store else "Not kept."
 
     def _events(self, lesson_id: str) -> Sequence[Event]:
         try:
@@ -518,6 +528,9 @@ class Page(Widget):
         """From time to time: a message goes, a cell runs on, a task was saved in an editor."""
         if self.reader.message != self._told:
             self.say_round()
+        if self._write.trouble and not self._warned:
+            self._warned = True
+            self.reader.say("What you do now is not recorded; q leaves and says why.")
         if self.running is not None:
             self.rebuild(self.running.index)
         # A file that is saved during a check is checked after it.

@@ -81,7 +81,11 @@ class Bench:
         """The key of the cell that runs and what to say of it; empty if none does."""
         if self.cell is None:
             return "", ""
-        return self.cell.key, f"runs, {perf_counter() - self._since:.0f} s; Ctrl-C stops it"
+        return self.cell.key, f"runs, {self._waited:.0f} s; Ctrl-C stops it"
+
+    @property
+    def _waited(self) -> float:
+        return perf_counter() - self._since
 
     def close(self) -> None:
         """Stop the cell that runs, and end its process."""
@@ -121,10 +125,10 @@ class Bench:
 
         try:
             runner = self._ready()
-            # A stop while the process is still starting is meant for the cell.
-            gave = CellOutput("", STOPPED, 0.0) if self._stopped else runner.run(cell)
+            # A stop while the process is still starting is meant for the cell; that time was shown as its.
+            gave = CellOutput("", STOPPED, self._waited) if self._stopped else runner.run(cell)
         except IsolationError as error:
-            gave = CellOutput("", f"The cell could not be run: {error}.", 0.0)
+            gave = CellOutput("", f"The cell could not be run: {error}.", self._waited)
         self.cell = None
         self._done(cell, source, gave)
 
@@ -262,6 +266,8 @@ class Practice:
         """
         exercise, opened = self._catalog.exercise(name), self._opened[name]
         path, told = self._path(exercise), ""
+        if self._workspace is not None:
+            self._workspace.must_be_there()
         now = path.read_bytes() if path.is_file() else opened
         if source == _text(opened):  # nothing was typed
             return "" if now == opened else "It was saved elsewhere meanwhile, and stays as it is there."

@@ -84,6 +84,18 @@ def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, work
     assert "Mistakes: 1 made, 1 fixed\n" in course("progress", "--plain").out
 
 
+def test_a_mistake_that_its_check_names_no_more_is_not_called_unfixed_and_sends_nobody_to_read(
+    course, workspace
+):
+    store = record(workspace)
+    for diagnosis in ("NOT_RIGHT", None):
+        check = {"id": "a", "task": "double", "status": "fail", "diagnosis": diagnosis}
+        store.append("check", "doubling", {"state": "graded", "checks": [check]})
+        body, shown = course("progress", "--json").json, course("progress", "--plain").out
+        assert body["mistakes"][0]["named"] == bool(diagnosis) == bool(body["revisit"])
+        assert (", not fixed yet, " if diagnosis else ", not named any more, ") in shown
+
+
 def test_an_exception_is_named_among_the_mistakes(course, workspace):
     store = record(workspace)
     check = {"id": "a", "task": "double", "status": "error", "diagnosis": "RAISED"}

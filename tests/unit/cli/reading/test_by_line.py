@@ -118,7 +118,7 @@ def test_contents_search_and_an_unknown_word(workspace):
     typed = Typed(lines("t", "/ shadow hamiltonian", "/ compass", "dance", "?", "n", "q"))
     typed.read(LESSON, Here.load())
     assert ": Fingerprints\n" in typed.said
-    assert "Not in this lesson.\n" in typed.said
+    assert re.search(r"^Not in this lesson, unless behind one of \d+ open predictions\.$", typed.said, re.M)
     assert "compass" in typed.said
     assert "'dance' does nothing here, and this is not the shell; ? lists what does." in typed.said
     assert "q or Ctrl-C: stop" in typed.said
@@ -161,6 +161,18 @@ def test_outside_of_a_workspace_it_reads_and_says_what_a_task_needs(tmp_path, mo
 
     assert typed.read(LESSON, None)
     assert typed.said.count("Make a workspace first: course init my-course") == 1
+
+
+def test_a_prediction_that_cannot_be_recorded_is_not_called_kept_and_the_reason_comes_at_once(workspace):
+    here = Here.load()
+    workspace.root.rename(workspace.root.with_name("moved"))
+    typed = Typed(
+        lambda question: "q" if "Not kept." in typed.said else "it grows" if "pred" in question else ""
+    )
+    assert not typed.read(LESSON, here)
+    assert "Kept." not in typed.said
+    assert typed.said.count("it was moved or removed") == 1
+    assert not workspace.root.exists()
 
 
 EXERCISE = "integrators"

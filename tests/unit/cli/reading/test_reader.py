@@ -175,6 +175,21 @@ async def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(app, 
     assert "3 wrong" not in screen(app)
 
 
+@pytest.mark.parametrize("moved", [False, True])
+def test_a_prediction_is_called_kept_only_where_it_is_recorded(mine, moved):
+    async def journey(app, pilot):
+        await to_question(app, pilot)
+        if moved:
+            mine.root.rename(mine.root.with_name("moved"))
+        await pilot.press("enter", *"seven", "enter")
+        await pilot.pause()
+        words = "Not kept: q says why." if moved else "Kept."
+        assert app.message.startswith(f"{words} The answer is open.")
+
+    app = reading(journey, workspace=mine)
+    assert ("it was moved or removed" in app.page.trouble) == moved == (not mine.root.exists())
+
+
 @reads()
 async def test_space_past_an_open_prediction_says_so_and_b_leads_back(app, pilot):
     await to_question(app, pilot)
@@ -201,6 +216,19 @@ def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(monkeypatch):
         assert 0.0 < app.page._share < 0.3
 
     reading(journey)
+
+
+@reads()
+async def test_a_cell_that_is_stopped_while_its_process_starts_took_the_time_that_its_reader_saw(app, pilot):
+    cell, bench = await to_cell(app, pilot), app.page.at_bench()
+    start = bench._ready
+    bench._ready = lambda: (time.sleep(0.3), start())[1]
+    await pilot.press("r")
+    bench.interrupt()
+    await ran(app, pilot)
+    state = app.page.progress.cell(cell)
+    assert state.error == "Stopped."
+    assert state.seconds >= 0.3
 
 
 @reads()
@@ -398,6 +426,24 @@ def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(mine, monkeypat
 
     app = reading(journey, workspace=mine)
     assert mine.store.events("bookmark", LESSON)[-1].data["block"] == app.page.place().block > 0
+
+
+@reads(lesson="collisions-and-contact")
+async def test_search_finds_what_the_first_screen_says_and_does_not_deny_what_it_hides(app, pilot):
+    lesson = app.page.progress.script.lesson
+    word = lesson.summary.rstrip(".").split()[-1]
+    assert word in screen(app)
+    assert app._search(word)[0][0] == f"lesson:{lesson.id}:-1"
+    ((key, said),) = app._search("zyx")
+    assert not key
+    assert re.fullmatch(r"In no lesson, unless behind one of \d+ open predictions\.", said)
+    await pilot.press("slash", *"zyx", "enter")
+    await pilot.pause()
+    await pilot.press("escape", "slash", *word, "enter")
+    await pilot.pause()
+    await pilot.press("enter")
+    await settled(app, pilot)
+    assert app.page.place().block == -1
 
 
 @reads()

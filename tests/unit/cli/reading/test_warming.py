@@ -53,7 +53,10 @@ def test_what_is_next_calls_it_a_small_task(warm, tmp_path, monkeypatch):
     assert warm("next", "--json").json["next"]["command"] == "course warmup adding"
     warm("warmup", "adding")
     body = warm("next", "--json").json
-    assert (body["next"]["command"], body["why"]) == ("course check adding", "the small task you started")
+    assert (body["next"]["command"], body["why"]) == (
+        "course check adding",
+        "the small task where you left off",
+    )
 
 
 def test_all_are_listed_by_lesson_with_what_is_done(warm, workspace):

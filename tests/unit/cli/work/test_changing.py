@@ -98,6 +98,17 @@ def test_update_keeps_an_earlier_new_file(course, workspace, write, newer_conten
     assert (workspace / body["changes"][1]["backup"]).read_text() == "my notes"
 
 
+def test_a_workspace_of_a_newer_course_is_not_taken_back_to_an_older_one(course, workspace):
+    marker = workspace / "course.toml"
+    marker.write_text(re.sub(r'^version = ".*"', 'version = "99.10.0"', marker.read_text(), flags=re.M))
+    before = files_in(workspace)
+    assert course("update", "--json").json["error"]["code"] == "workspace_newer"
+    assert files_in(workspace) == before
+    said = course().out
+    assert "this workspace at 99.10.0: install the newer course." in " ".join(said.split())
+    assert "course update" not in said
+
+
 def test_update_leaves_a_removed_file_removed(course, workspace, newer_content):
     (workspace / "doubling" / "doubling.py").unlink()
     assert course("update", "--json").json["changes"][1]["action"] == "missing"

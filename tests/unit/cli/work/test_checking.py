@@ -1,5 +1,7 @@
 """``course check``: what it says, what it records, how it ends."""
 
+import shutil
+
 import pytest
 
 from course.handed_in.limits import MAX_FILE
@@ -212,6 +214,20 @@ def test_an_empty_line_parts_the_score_from_the_curve_below_it(course, write, cu
     said = next(at for at, line in enumerate(lines) if "doublings_works: x over time" in line)
     assert lines[said - 1] == ""
     assert "Score" in lines[said - 2]
+
+
+def test_a_clone_without_the_record_has_its_exercises_by_their_files(course, workspace, write):
+    write("RIGHT", "wrong")
+    shutil.rmtree(workspace / ".course")
+    assert course("check").code == 1
+    shutil.rmtree(workspace / ".course")
+    assert course("hint", "--json").json["next"]["command"] == "course check doubling"
+    shutil.rmtree(workspace / ".course", ignore_errors=True)
+    course("start", "halving")
+    shutil.rmtree(workspace / ".course")
+    error = course("check", "--json").json["error"]
+    assert error["code"] == "several_started"
+    assert "none was worked on last: doubling, halving." in error["message"]
 
 
 def test_advice_names_the_exercise_or_the_file_it_is_about(course, tmp_path):

@@ -164,7 +164,8 @@ def export(results: Results, name: str, out: Path, target: Path | None, options:
             or students are left out and a run keeps that file about all.
 
     Raises:
-        UsageError: there is no such format, or it needs something that was not given.
+        UsageError: there is no such format, it needs something that was not given, or the file is another
+            format's.
         MissingCapabilityError: students are missing in the roster, or it cannot be written.
     """
     if name not in FORMATS:
@@ -175,4 +176,8 @@ def export(results: Results, name: str, out: Path, target: Path | None, options:
         # The run's own file there is about the whole class, and stays so.
         part = name in _OF_A_RUN and is_part(results, options)
         target = out / "part" / usual if part else out / usual
+    for file, other in (*((FORMATS[one][0], one) for one in sorted(_OF_A_RUN)), ("students.csv", "html")):
+        if other != name and target.resolve() == (out / file).resolve():
+            message = f"{target} is the run's own file (--format {other}). Nothing was written."
+            raise UsageError(message, help="Name another file with -o PATH.", code="out_exists")
     return write(target, results, options)

@@ -142,6 +142,17 @@ def test_a_part_never_takes_the_place_of_what_is_about_all(results, tmp_path, na
     assert export(results, name, tmp_path, tmp_path / usual, OPTIONS).paths[0] == tmp_path / usual
 
 
+@pytest.mark.parametrize(
+    ("name", "file"), [("csv", "results.jsonl"), ("junit", "grades.csv"), ("csv", "students.csv")]
+)
+def test_no_export_takes_the_place_of_what_the_run_wrote_in_another_format(results, tmp_path, name, file):
+    (tmp_path / file).write_text("the run's own")
+    with pytest.raises(UsageError, match="Nothing was written") as caught:
+        export(results, name, tmp_path, tmp_path / "x" / ".." / file, ExportOptions(zeros=True))
+    assert caught.value.code == "out_exists"
+    assert (tmp_path / file).read_text() == "the run's own"
+
+
 def test_no_export_is_written_over_a_gradebook(results, tmp_path):
     path = tmp_path / "gradebook.sqlite"
     with make_book(tmp_path, {"ada": RIGHT}):
@@ -300,7 +311,7 @@ def test_moodle_finds_its_students_by_their_key(results, tmp_path):
 
 
 def test_moodles_grade_import_is_told_the_scale_of_its_points(results, tmp_path):
-    notes = export(results, "moodle", tmp_path, tmp_path / "grades.csv", OPTIONS).notes
+    notes = export(results, "moodle", tmp_path, tmp_path / "moodle.csv", OPTIONS).notes
     assert [note for note in notes if "points of the exercise (doubling 10)" in note], notes
 
 

@@ -387,6 +387,8 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
     for item in done:
         one, after = _assigned_one(item), item.after
         scored = f"{opt.points(after.score)} of {format_points(after.max_score)}"
+        if after.override is not None:
+            scored += f" by hand ({checks_gave(after)})"
         words = f"{one.state_before} -> {one.state_after}, {scored}; from {quoted(one.file)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:

@@ -207,6 +207,7 @@ class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True
     graders: str = ""
     unjudged: tuple[str, ...] = ()
     rescaled: tuple[str, ...] = ()
+    gone: dict[str, int]
 
 
 def rerun(
@@ -252,8 +253,10 @@ def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -
     console.line((f"{done.regraded - done.faults} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
         console.note(f"Graded by the same graders already: {done.up_to_date}; --all grades them again.")
-    if done.kept:
-        console.note(f"Without a submission in the gradebook, and unchanged: {done.kept}.")
+    if without := done.kept - sum(done.gone.values()):
+        console.note(f"Without a submission in the gradebook, and unchanged: {without}.")
+    for name, count in done.gone.items():
+        console.note(f"These graders do not have the exercise {name}; unchanged: {count}.")
     show_faults(console, done, out)
     show_unjudged(console, done.unjudged)
     for told in done.rescaled:

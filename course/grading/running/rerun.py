@@ -5,6 +5,7 @@ seed. Submissions are regraded if another version of the graders scored them, or
 unscored. Old results are kept beside the new ones; an override still replaces both.
 """
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -91,7 +92,9 @@ class Regraded(msgspec.Struct, frozen=True):
 
     Attributes:
         up_to_date: results from the same graders, which were left alone.
-        kept: results whose submission is not in the gradebook (nothing was handed in, or it was refused).
+        kept: results whose submission is not in the gradebook (nothing was handed in, or it was refused), and
+            those of ``gone``.
+        gone: exercises that the graders do not have, with the number of their results.
         faults: submissions that a fault of ours kept from being graded; what counted before counts on.
         troubled: these.
         graders: digest of the snapshot that judged.
@@ -109,6 +112,7 @@ class Regraded(msgspec.Struct, frozen=True):
     troubled: tuple[Ungraded, ...] = ()
     unjudged: tuple[str, ...] = ()
     rescaled: tuple[str, ...] = ()
+    gone: dict[str, int] = {}
 
 
 def rerun(
@@ -150,6 +154,7 @@ def rerun(
         troubled=tuple(troubled),
         unjudged=running.unjudged(broken),
         rescaled=rescaled,
+        gone=dict(+task.gone),
     )
 
 
@@ -206,6 +211,7 @@ class _Rerun:
         self._before: dict[tuple[str, str], Effective] = {}
         self._begun = False
         self.up_to_date = self.kept = 0
+        self.gone: Counter[str] = Counter()
 
     def pairs(self, grade: GradeAll) -> Iterator[tuple[Effective, Effective]]:
         """The scores before and after, for each regraded submission."""
@@ -232,6 +238,7 @@ class _Rerun:
                 exercise = self._exercises.get(key.exercise)
                 if files is None or exercise is None:
                     self.kept += 1
+                    self.gone[key.exercise] += exercise is None
                     continue
                 submission = Submission(files)
                 if submission.sha256 != key.submission_sha256:

@@ -181,6 +181,19 @@ def test_a_file_with_functions_that_the_graded_one_lacks_is_listed_until_one_of_
     assert course("grade", "assign", "new", "--json").json["elsewhere"] == []
 
 
+def test_an_assignment_under_a_score_by_hand_says_whose_points_count(course, here):
+    course("grade", "override", "out", "bob", "doubling", "--score", "3", "--reason", "oral")
+    ran = course("grade", "assign", "out", "bob", "hw.py", "--exercise", "doubling", "--reason", "his")
+    assert "graded, 3 of 10 by hand (the checks gave 10); from 'hw.py'" in " ".join(ran.out.split())
+
+
+def test_a_regrading_names_the_exercise_that_its_graders_do_not_have(course, here):
+    shutil.move(here / "content" / "exercises" / "doubling", here / "doubling")
+    ran = course("grade", "rerun", "out", "--all")
+    assert "These graders do not have the exercise doubling; unchanged: " in ran.out, ran.err
+    assert "Without a submission" not in ran.out
+
+
 def test_what_was_said_of_a_file_stays_when_it_is_graded_again(course, here):
     (here / "class" / "ada" / "more.py").write_text(SOURCE + "# another\n")
     course("grade", "run", "class", "--out", "new", "--exercise", "doubling")

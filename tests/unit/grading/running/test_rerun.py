@@ -123,6 +123,7 @@ def test_what_was_not_handed_in_stays_as_it_is(tmp_path, catalog):
         book.add(Result(Key("ada", "gone", digest("ada"), "v", 7), RIGHT), {"doubling.py": b"ada"})
         done = rerun(Results(book), catalog, RerunOptions(), grade=Graders())
         assert (done.kept, done.regraded, done.changes) == (2, 0, ())
+        assert done.gone == {"gone": 1}
 
 
 def test_a_submission_that_is_not_what_was_handed_in_is_never_graded(tmp_path, catalog):

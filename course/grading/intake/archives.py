@@ -383,9 +383,10 @@ class _Request(msgspec.Struct, frozen=True):
     streamed: int = MAX_STREAMED
 
 
-#: A file by its name in its archive, the digest of its content, the names of the functions in it, how much
-#: code was parsed to find them, and what it is if that is not what its name says.
-Outline = tuple[str, str, tuple[str, ...], tuple[str, ...], int, str]
+#: A file by its name in its archive, the digest of its content, the names of the functions in it and of those
+#: that are written, the digest of its code, how much code was parsed to find them, and what it is if that is
+#: not what its name says.
+Outline = tuple[str, str, tuple[str, ...], tuple[str, ...], str, int, str]
 
 
 class _Reply(msgspec.Struct, frozen=True):
@@ -556,21 +557,21 @@ def _outlines(
     else:
         digest = hashlib.sha256(content).hexdigest()
         if len(content) > MAX_NOTEBOOK:
-            yield "", digest, (), (), 0, "larger than 32 MB"
+            yield "", digest, (), (), "", 0, "larger than 32 MB"
         elif kind in _IS_CODE:
             yield "", digest, *_defined(path.name, content, functions), kind
         else:
-            yield "", digest, (), (), 0, kind
+            yield "", digest, (), (), "", 0, kind
         return
     if not files and not _is_record(path):
         without = f"{kind} without a file of code"
         if kind == "a zip archive" and (aside := _given(_held(path)).aside):
             without = f"{kind} with code only where none is looked for: {some([*map(quoted, aside)], _SHOWN)}"
-        yield "", hashlib.sha256(content).hexdigest(), (), (), 0, without
+        yield "", hashlib.sha256(content).hexdigest(), (), (), "", 0, without
     for name, found in files:
         what = downloads.kind_of(name, found)
         digest = hashlib.sha256(found).hexdigest()
-        yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), (), 0)), what
+        yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), (), "", 0)), what
 
 
 def _is_record(path: Path) -> bool:
@@ -585,29 +586,43 @@ _IS_CODE = frozenset({"", "a text", "a notebook"})
 
 def _defined(
     name: str, content: bytes, functions: tuple[str, ...]
-) -> tuple[tuple[str, ...], tuple[str, ...], int]:
-    """The functions among these that a file's top level defines, those of them that are written, and how much
-    code was parsed for that."""
+) -> tuple[tuple[str, ...], tuple[str, ...], str, int]:
+    """The functions among these that a file's top level defines, those of them that are written, the digest
+    of all that it defines and assigns, and how much code was parsed for that."""
     content = in_utf8(content)  # as ``assign`` reads it
     if not any(function.encode() in content for function in functions):
-        return (), (), 0  # parsing takes a hundred times as long as looking
+        return (), (), "", 0  # parsing takes a hundred times as long as looking
     pieces: list[str | bytes] = [content]
     try:
         if name.casefold().endswith(".ipynb") or downloads.is_notebook(content):
             cells = json.loads(content).get("cells", ())
             pieces = ["".join(cell.get("source", ())) for cell in cells if cell.get("cell_type") == "code"]
     except (ValueError, AttributeError, TypeError, RecursionError):
-        return (), (), 0
+        return (), (), "", 0
     size = sum(map(len, pieces))
     if size > limits.MAX_CODE:
-        return (), (), 0  # nor could it be graded
-    found = [node for tree in map(statements.tree, pieces) if tree for node in tree.body]
+        return (), (), "", 0  # nor could it be graded
     written: dict[str, bool] = {}  # the last one of a name counts
-    for node in found:
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            written[node.name] = not _as_in_a_stub(node.body)
+    code = hashlib.sha256()
+    for piece in pieces:
+        found = statements.tree(piece)
+        raw = piece if isinstance(piece, bytes) else piece.encode("utf-8", "surrogatepass")
+        lines = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
+        done = 0  # a line may hold thousands of statements
+        for node in found.body if found else ():
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                written[node.name] = not _as_in_a_stub(node.body)
+            if isinstance(node, _DEFINES):
+                code.update(
+                    b"".join(line + b"\n" for line in lines[max(node.lineno - 1, done) : node.end_lineno])
+                )
+                done = node.end_lineno or done
     defined = tuple(function for function in functions if function in written)
-    return defined, tuple(function for function in defined if written[function]), size
+    return defined, tuple(function for function in defined if written[function]), code.hexdigest(), size
+
+
+#: Statements that make up a file's code; imports and tries may differ between a notebook and its module.
+_DEFINES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Assign, ast.AnnAssign)
 
 
 def _as_in_a_stub(body: list[ast.stmt]) -> bool:

@@ -545,6 +545,7 @@ class Candidate(msgspec.Struct, frozen=True):
         sha256: digest of its content.
         defines: names of the functions in it; only an exercise's tasks, where it is listed for an exercise.
         written: those of them that do more than a stub's.
+        code: digest of what it defines and assigns; empty if nothing is known of it.
         kind: what it is, or why it cannot be read; empty for code and notebooks.
         proposed: it is the only match.
     """
@@ -557,6 +558,7 @@ class Candidate(msgspec.Struct, frozen=True):
     proposed: bool = False
     kind: str = ""
     written: tuple[str, ...] = ()
+    code: str = ""
 
 
 class Found(msgspec.Struct, frozen=True):
@@ -659,10 +661,10 @@ def _outlined(
         why = refused.problem.message.removeprefix(f"{quoted(path.name)}: ").rstrip(".")
         return [Candidate(shown, os.fsencode(path), sha256="" if killed else shown, kind=why)], 0
     candidates = []
-    for member, sha256, defines, written, _, kind in outlines:
+    for member, sha256, defines, written, code, _, kind in outlines:
         inside = f"{shown}/{one_line(member)}" if member else shown
         about = (inside, os.fsencode(path), member, sha256, defines)
-        candidates.append(Candidate(*about, kind=kind, written=written))
+        candidates.append(Candidate(*about, kind=kind, written=written, code=code))
     return candidates, sum(parsed for *_, parsed, _ in outlines)
 
 
@@ -694,15 +696,31 @@ def found_for(
                 worth, alike = 0, 0.0
             ranked.append((worth, alike, msgspec.structs.replace(one, defines=mine, written=written)))
     ranked.sort(
-        key=lambda item: (-item[0], -item[1], not item[2].name.casefold().endswith(HANDED_IN), item[2].name)
+        key=lambda item: (
+            -item[0],
+            -item[1],
+            not item[2].name.casefold().endswith(HANDED_IN),
+            _is_notebook(item[2]),
+            item[2].name,
+        )
     )
     most = ranked[0][0] if ranked else 0
-    distinct = {item[2].sha256: item[0] or item[1] for item in reversed(ranked)}
+    # A notebook and a module with its code are one.
+    modules = {item[2].code for item in ranked if item[0] and not _is_notebook(item[2])}
+    distinct = {
+        item[2].sha256: item[0] or item[1]
+        for item in reversed(ranked)
+        if not (_is_notebook(item[2]) and item[2].code in modules)
+    }
     best = most or max(distinct.values(), default=0.0)
     # Two equally good files that differ: the grader must not decide which one counts.
     clear = best > 0 and list(distinct.values()).count(best) == 1
     found = [one for *_, one in ranked]
     return tuple(msgspec.structs.replace(one, proposed=clear and one is found[0]) for one in found)
+
+
+def _is_notebook(one: Candidate) -> bool:
+    return one.kind == "a notebook" or one.name.casefold().endswith(".ipynb")
 
 
 def described(candidates: Sequence[Candidate]) -> str:

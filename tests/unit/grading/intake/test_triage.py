@@ -153,6 +153,16 @@ ASKED = {
     "of which one is nothing": (
         {"doubling.py": b"x = 1\n", "doubling (1).py": OTHER}, "ambiguous_files", "doubling (1).py"
     ),
+    "a notebook and its code": ({"doubling.py": SOURCE, "doubling.ipynb": NOTEBOOK}, "ambiguous_files",
+        "doubling.py"),
+    "a notebook and its code, of Windows": (
+        {"a.py": SOURCE.replace(b"\n", b"\r\n"), "a.ipynb": NOTEBOOK}, "no_file", "a.py"
+    ),
+    "a notebook and other code": ({"doubling.py": SOURCE.replace(b"2", b"3"), "doubling.ipynb": NOTEBOOK},
+        "ambiguous_files", None),
+    "a notebook with another constant": (
+        {"a.py": b"G = 9\n" + SOURCE, "b.ipynb": notebook("G = 10\n" + SOURCE.decode())}, "no_file", None
+    ),
     "in a build folder": ({"build/doubling.py": SOURCE}, "no_file", "build/doubling.py"),
     "in an editor's folder": ({".vscode/a/work.py": SOURCE, ".vscode/a.json": b"{}"}, "no_file",
         ".vscode/a/work.py"),

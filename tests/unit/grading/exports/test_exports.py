@@ -19,7 +19,7 @@ from course.grading.exports.grades import is_safe, number, replacing, safe_cell,
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import Override, SubmittedAt
 from course.grading.results.effective import Results
-from course.grading.results.roster import Person, Roster
+from course.grading.results.roster import Column, Person, Roster
 from tests.unit.grading.made import (
     BROKEN,
     HALF,
@@ -291,6 +291,20 @@ def test_canvas_finds_its_students_and_its_assignment(results, tmp_path):
     assert grades == ["8", "8.25", ""], "a fault of ours is no zero"
     names = {row[1]: row[0] for row in csv.reader(io.StringIO(content.decode(), newline=""))}
     assert names["100"] == safe_cell(HOSTILE[0])
+
+
+def test_a_score_that_canvas_has_is_no_zero_where_nothing_could_be_graded(results, tmp_path):
+    refused = next(one for one in results.all() if one.unsettled)
+    theirs = {results.person(refused.student).canvas_id: "8.5"}
+    options = dataclasses.replace(OPTIONS, columns={"4711": Column("Doubling (4711)", 10.0, theirs)})
+    (id_,) = theirs
+    for overwrite, score in ((False, "8.5"), (True, "0")):
+        written = export(
+            results, "canvas", tmp_path, tmp_path / "c.csv", dataclasses.replace(options, overwrite=overwrite)
+        )
+        assert len(written.kept) == (not overwrite)
+        (row,) = (one for one in csv.reader(io.StringIO((tmp_path / "c.csv").read_text())) if one[1] == id_)
+        assert row[-1] == score
 
 
 def test_moodle_finds_its_students_by_their_key(results, tmp_path):

@@ -75,14 +75,14 @@ class Here:
                 )
             return chosen
         there = self.workspace.begun()
-        begun = [one.id for one in self._every() if one.id in there]
-        for name in (self._folder_name(), self._last_worked_on(), begun[0] if len(begun) == 1 else ""):
+        names = [one.id for one in self._every() if one.id in there]
+        for name in (self._folder_name(), self._last_worked_on(), names[0] if len(names) == 1 else ""):
             if name in self._known:
                 return self.catalog.exercise(name)
-        if not begun:
+        if not names:
             raise self.nothing_started()
-        problem = f"There are several exercises here, and none was worked on last: {', '.join(begun)}."
-        fix = f"Name one, as in `course check {begun[0]}`, or change into its folder."
+        problem = f"There are several exercises here, and none was worked on last: {', '.join(names)}."
+        fix = f"Name one, as in `course check {names[0]}`, or change into its folder."
         raise NotFoundError(problem, help=fix, code="several_started")
 
     def of_folder(self) -> Exercise | None:

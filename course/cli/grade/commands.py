@@ -78,7 +78,7 @@ def export(
         option(
             "--overwrite",
             "Replace what is in the file already: Moodle's grades and feedback; Canvas' EX, and its scores"
-            " where --missing zero writes 0.",
+            " where nothing was graded.",
         ),
     ] = False,
     exercise: Exercises = None,

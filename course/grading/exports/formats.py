@@ -176,8 +176,8 @@ def export(results: Results, name: str, out: Path, target: Path | None, options:
         # The run's own file there is about the whole class, and stays so.
         part = name in _OF_A_RUN and is_part(results, options)
         target = out / "part" / usual if part else out / usual
-    for file, other in (*((file, one) for one, (file, _) in FORMATS.items()), ("students.csv", "html")):
+    for file, other in (*((FORMATS[one][0], one) for one in sorted(_OF_A_RUN)), ("students.csv", "html")):
         if other != name and target.resolve() == (out / file).resolve():
-            message = f"{target} is where --format {other} is written. Nothing was written."
+            message = f"{target} is the run's own file (--format {other}). Nothing was written."
             raise UsageError(message, help="Name another file with -o PATH.", code="out_exists")
     return write(target, results, options)

@@ -85,7 +85,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
     headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *(one.heading for one in columns)]
     rows = [["    Points Possible", "", "", "", "", *map(number, possible)]]
     scales = {name: points / most[name] for name, points in zip(selection.exercises, possible, strict=True)}
-    absent = {(one.student, one.exercise) for one in results.all() if one.missing}
+    blind = {(one.student, one.exercise) for one in results.all() if one.missing or one.unsettled}
     for student, scores in _table(selection, scales).items():
         person = selection.people[student]
         for at, (name, column) in enumerate(zip(selection.exercises, columns, strict=True)):
@@ -96,7 +96,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
                     " and is left out: the import takes it away there."
                 )
                 continue
-            weaker = theirs.upper() == "EX" or ((student, name) in absent and is_safe(theirs))
+            weaker = theirs.upper() == "EX" or ((student, name) in blind and is_safe(theirs))
             if not ours or (theirs and weaker and not options.overwrite):
                 scores[at] = theirs
                 if ours and not _same(theirs, ours):
@@ -105,7 +105,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
         ids = person.canvas_id, person.sis_user_id, login
         rows.append([person.name or student, *ids, person.section, *scores])
     if selection.written.kept:
-        who = "Who is excused in Canvas, or has a score there and handed in nothing here,"
+        who = "Who is excused in Canvas, or has a score there and nothing graded here,"
         notes.append(f"{who} {_kept(selection.written)}")
     # Ruby's CSV reader, which Canvas uses, fails on a quote after a byte order mark.
     write_bytes(path, csv_bytes(headings, rows, mark=False))

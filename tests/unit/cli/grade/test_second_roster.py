@@ -242,7 +242,7 @@ def test_whom_canvas_excuses_stays_excused(course, out):
     write(out.parent, "canvas.csv", CANVAS.replace(",bob,A,", ",bob,A,EX"))
     ran = course(*TO_CANVAS, "canvas.csv")
     assert '"bob","A","EX"' in (out / "canvas.csv").read_text(), "an empty cell takes the excuse away"
-    assert "handed in nothing here, stays so: bob doubling (EX)." in " ".join(ran.out.split())
+    assert "nothing graded here, stays so: bob doubling (EX)." in " ".join(ran.out.split())
     assert course(*TO_CANVAS, "canvas.csv", "--json").json["kept"] == ["bob doubling (EX)"]
     assert course(*TO_CANVAS, "canvas.csv", "--overwrite").code == 0
     assert '"bob","A","10"' in (out / "canvas.csv").read_text()

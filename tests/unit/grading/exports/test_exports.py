@@ -19,7 +19,7 @@ from course.grading.exports.grades import is_safe, number, replacing, safe_cell,
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import Override, SubmittedAt
 from course.grading.results.effective import Results
-from course.grading.results.roster import Person, Roster
+from course.grading.results.roster import Column, Person, Roster
 from tests.unit.grading.made import (
     BROKEN,
     HALF,
@@ -145,7 +145,7 @@ def test_a_part_never_takes_the_place_of_what_is_about_all(results, tmp_path, na
 @pytest.mark.parametrize(
     ("name", "file"), [("csv", "results.jsonl"), ("junit", "grades.csv"), ("csv", "students.csv")]
 )
-def test_no_export_takes_the_place_of_another_format_in_the_runs_folder(results, tmp_path, name, file):
+def test_no_export_takes_the_place_of_what_the_run_wrote_in_another_format(results, tmp_path, name, file):
     (tmp_path / file).write_text("the run's own")
     with pytest.raises(UsageError, match="Nothing was written") as caught:
         export(results, name, tmp_path, tmp_path / "x" / ".." / file, ExportOptions(zeros=True))
@@ -293,6 +293,20 @@ def test_canvas_finds_its_students_and_its_assignment(results, tmp_path):
     assert names["100"] == safe_cell(HOSTILE[0])
 
 
+def test_a_score_that_canvas_has_is_no_zero_where_nothing_could_be_graded(results, tmp_path):
+    refused = next(one for one in results.all() if one.unsettled)
+    theirs = {results.person(refused.student).canvas_id: "8.5"}
+    options = dataclasses.replace(OPTIONS, columns={"4711": Column("Doubling (4711)", 10.0, theirs)})
+    (id_,) = theirs
+    for overwrite, score in ((False, "8.5"), (True, "0")):
+        written = export(
+            results, "canvas", tmp_path, tmp_path / "c.csv", dataclasses.replace(options, overwrite=overwrite)
+        )
+        assert len(written.kept) == (not overwrite)
+        (row,) = (one for one in csv.reader(io.StringIO((tmp_path / "c.csv").read_text())) if one[1] == id_)
+        assert row[-1] == score
+
+
 def test_moodle_finds_its_students_by_their_key(results, tmp_path):
     """One row a student, found by whatever field the teacher maps; an empty cell is no grade.
 
@@ -311,7 +325,7 @@ def test_moodle_finds_its_students_by_their_key(results, tmp_path):
 
 
 def test_moodles_grade_import_is_told_the_scale_of_its_points(results, tmp_path):
-    notes = export(results, "moodle", tmp_path, tmp_path / "grades.csv", OPTIONS).notes
+    notes = export(results, "moodle", tmp_path, tmp_path / "moodle.csv", OPTIONS).notes
     assert [note for note in notes if "points of the exercise (doubling 10)" in note], notes
 
 

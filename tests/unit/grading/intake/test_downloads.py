@@ -111,6 +111,21 @@ def test_a_moodle_download_without_folders_is_a_class_and_file_names_forge_nobod
     }
 
 
+def test_of_a_moodle_folder_and_files_of_one_student_somebody_has_to_choose(tmp_path, doubling):
+    lay(
+        tmp_path,
+        "Ada_11_assignsubmission_file/doubling.py",
+        "Ada_11_assignsubmission_file_doubling.py",
+    )
+    found = class_list(tmp_path)
+    assert graded(found, doubling) == {"Ada_11": "ambiguous_files"}
+    (entry,) = read_student(found.students[0], (doubling,), required=True)
+    assert [one.name for one in entry.found.candidates] == [
+        "Ada_11_assignsubmission_file/doubling.py",
+        "files/doubling.py",
+    ]
+
+
 METADATA = """---
 submission_900:
   :submitters:

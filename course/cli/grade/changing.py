@@ -13,7 +13,7 @@ from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids
 from course.cli.frame.replies import Envelope, filled
 from course.cli.grade import options as opt
-from course.cli.grade.running import checks_gave, show_elsewhere, show_unjudged
+from course.cli.grade.running import checks_gave, show_elsewhere, show_listed, show_unjudged
 from course.errors import UsageError
 from course.grading.exports.grades import grade_line, utc
 from course.grading.gradebook.records import Decision, Run, SubmittedAt
@@ -362,13 +362,9 @@ def assign(
             left = assigning.unsettled(Results(results.book))
     elif student is None and not accept_names:
         with open_results(out) as results:
-            left = assigning.unsettled(results)
-            waiting = len({item.student for item in results.all() if item.waiting})
-            elsewhere = tuple(
-                f"{item.student} {item.exercise}: {item.elsewhere}"
-                for item in results.all()
-                if item.elsewhere
-            )
+            left, each = assigning.unsettled(results), list(results.all())
+        waiting = len({one.student for one in each if one.waiting})
+        elsewhere = tuple(f"{one.student} {one.exercise}: {one.elsewhere}" for one in each if one.elsewhere)
     else:
         level, at_least = opt.levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "a trial" if dry_run else "")
@@ -398,30 +394,29 @@ def assign(
             console, left, out, "would be left to settle" if (done or lifted) and dry_run else "to settle"
         )
         show_elsewhere(console, elsewhere, out)
+        show_listed(console, unowned, "of unknown owner")
         if unowned:
-            console.line((f"{len(unowned)} of unknown owner:", "bold"))
-            for sentence in unowned[:_SHOWN]:
-                console.line(one_line(sentence), indent=2)
             given = command("grade", "assign", out, "STUDENT", "FILE")
             console.note(f"{given}, with FILE as a path, says whose it is; a run with --resume looks again.")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
-    unsettled = []
-    for item in left:
-        files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
-        unsettled.append(filled(UnsettledOne, item, reason=item.found.reason, files=files))
     ones, back = (tuple(map(_assigned_one, items)) for items in (done, lifted))
     return console.answer(
         GradeAssign(
             dry_run=dry_run,
             assigned=ones,
-            unsettled=tuple(unsettled),
+            unsettled=tuple(map(_unsettled_one, left)),
             unjudged=broke,
             elsewhere=elsewhere,
             lifted=back,
             unrecognised=tuple(unowned),
         )
     )
+
+
+def _unsettled_one(item: Unsettled) -> UnsettledOne:
+    files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
+    return filled(UnsettledOne, item, reason=item.found.reason, files=files)
 
 
 def _assigned_one(item: Assigned) -> AssignedOne:

@@ -177,12 +177,7 @@ def _show_people(console: Console, summary: Summary) -> None:
         (summary.lower, "lower than before, by what was handed in now"),
         (summary.untimed, "handed in again, and on time until `course grade late --times` says when"),
     ):
-        if listed:
-            console.line((f"{len(listed)} {words}:", "bold"))
-        for entry in listed[:_MOST_TROUBLED]:
-            console.line(one_line(entry), indent=2)
-        if len(listed) > _MOST_TROUBLED:
-            console.line(f"and {len(listed) - _MOST_TROUBLED} more.", indent=2)
+        show_listed(console, listed, words)
         if listed is summary.missing and listed and not (summary.states or summary.already):
             console.note("A warm-up is graded where --exercise names it.")
         if listed is summary.strangers and listed:
@@ -388,14 +383,20 @@ def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = "") 
         console.line(f"and {len(told) - _MOST_TROUBLED} more{where}.", indent=2)
 
 
+def show_listed(console: Console, listed: Sequence[str], words: str) -> None:
+    """How many of something there are, and the first of them; nothing if there are none."""
+    if listed:
+        console.line((f"{len(listed)} {words}:", "bold"))
+    for entry in listed[:_MOST_TROUBLED]:
+        console.line(one_line(entry), indent=2)
+    if len(listed) > _MOST_TROUBLED:
+        console.line(f"and {len(listed) - _MOST_TROUBLED} more; --json lists them all.", indent=2)
+
+
 def show_elsewhere(console: Console, listed: Sequence[str], out: Path) -> None:
     """Graded submissions without functions that lie in another file of the student's."""
+    show_listed(console, listed, "graded without functions that another file has")
     if listed:
-        console.line((f"{len(listed)} graded without functions that another file has:", "bold"))
-        for entry in listed[:_MOST_TROUBLED]:
-            console.line(one_line(entry), indent=2)
-        if len(listed) > _MOST_TROUBLED:
-            console.line(f"and {len(listed) - _MOST_TROUBLED} more; --json lists them all.", indent=2)
         given = command("grade", "assign", out, "STUDENT", "FILE", "--exercise", "ID", "--reason", "TEXT")
         console.note(f"{given} grades that file, or confirms the one that was graded.")
 

@@ -32,7 +32,7 @@ from course.cli.home.replies import Go
 from course.cli.reading.commands import show_text
 from course.cli.work.changing import put, tell_length
 from course.cli.work.checking import curve_replies, reply_to, show_curve
-from course.cli.work.chosen import NOTEBOOK, asked_for, chosen_work
+from course.cli.work.chosen import NOTEBOOK, asked_for, chosen_work, is_edited
 from course.cli.work.hinting import give_hint
 from course.cli.work.replies import Check, Watch, WatchRun
 from course.cli.work.verdict import is_unwritten, show_changes, show_loading, show_verdict
@@ -448,8 +448,8 @@ class Watcher:
         """Whether there is something to check: the file that counts was edited."""
         try:
             work = chosen_work(self.here, self.exercise, self.named)
-            self._name, place = work.name, self.exercise.place
-            return work.notebook is not None or self.here.workspace.is_edited(place, work.name, work.data)
+            self._name = work.name
+            return work.notebook is not None or is_edited(work)
         except CourseError:  # the check says what is wrong
             return True
 

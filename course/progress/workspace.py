@@ -207,11 +207,6 @@ class Workspace:
         """Keep how a file looked when it was handed out."""
         write_atomically(self._given_path(place, name), data)
 
-    def is_edited(self, place: str, name: str, data: bytes) -> bool:
-        """True unless ``data`` is the file as it was handed out, line endings aside."""
-        given = self.given(place, name)
-        return given is None or not same_text(given, data)
-
     def backup(self, path: Path, why: str) -> Path:
         """Copy ``path`` into a new folder of backups and give the copy's place.
 

@@ -166,7 +166,7 @@ def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_r
     elif given is not None and same_text(given, new):
         return Change(path=str(path), action="current")  # edited by the student, and nothing newer to offer
     else:
-        action = "beside" if workspace.is_edited(exercise.place, name, mine) else "replace"
+        action = "replace" if given is not None and same_text(given, mine) else "beside"
     change = _put(path, f"{name}.new", new, action, dry_run=dry_run or action == "current")
     if not dry_run and given != new:
         workspace.remember(exercise.place, name, new)

@@ -24,6 +24,7 @@ from course.notebooks.cells import dumped
 from course.notebooks.merge import is_untouched
 from course.printable import command
 from course.progress.history import fingerprint
+from course.progress.workspace import same_text
 
 if TYPE_CHECKING:
     from course.handed_in.notebook import NotebookSource
@@ -103,9 +104,9 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Stu
     if not here.workspace.path(exercise.place, exercise.module).exists():
         return _notebook(here, exercise)
     module = _module(here, exercise)
-    if not _is_edited(here, module):
+    if not is_edited(module):
         notebook = _notebook(here, exercise)
-        return notebook if _is_edited(here, notebook) else module
+        return notebook if is_edited(notebook) else module
     return _beside_notebook(here, module)
 
 
@@ -138,7 +139,7 @@ def work_of(
         there = here.workspace.path(exercise.place, exercise.module).exists()
         module = _module(here, exercise) if there else None
         notebook, why_not = _handed_in_notebook(here, exercise)
-        if module is not None and _is_edited(here, module):
+        if module is not None and is_edited(module):
             chosen.append(module)
             why_not = f"{exercise.module} was worked in too, and is handed in" if notebook else why_not
         elif notebook is not None:
@@ -197,9 +198,10 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
     return StudentWork(exercise, name, data, module.source, given.source, module)
 
 
-def _is_edited(here: Here, work: StudentWork) -> bool:
+def is_edited(work: StudentWork) -> bool:
+    """Whether a file is not as it was handed out; where no record says how that was, as it would be now."""
     if work.notebook is None:
-        return here.workspace.is_edited(work.exercise.place, work.name, work.data)
+        return not same_text(work.stub, work.data)
     return not is_untouched(work.data) and fingerprint(work.source) != fingerprint(work.stub)
 
 
@@ -209,7 +211,7 @@ def _beside_notebook(here: Here, module: StudentWork) -> StudentWork:
         notebook = _notebook(here, module.exercise)
     except CourseError:
         return module  # `submit` says what is wrong with it
-    if not _is_edited(here, notebook) or fingerprint(notebook.source) == fingerprint(module.source):
+    if not is_edited(notebook) or fingerprint(notebook.source) == fingerprint(module.source):
         return module
     note = (
         f"{notebook.path} was worked in too and holds other code; {module.path} is what counts and was read. "
@@ -231,7 +233,7 @@ def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | N
         notebook = _notebook(here, exercise)
     except CourseError as problem:
         return None, problem.message.rstrip(".")
-    if not _is_edited(here, notebook):
+    if not is_edited(notebook):
         return None, _STUB
     try:
         small = _without_outputs(notebook.data)

@@ -27,6 +27,8 @@ from course.scoring.verdict import CheckResult, Problem, finite
 #: A spreadsheet takes a cell that begins with one of these for a formula; with a full-width one in some
 #: languages. The apostrophe that disarms them is itself doubled, so that no two texts become one.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "'", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+#: Points below zero, as a teacher takes them off: a number and no formula.
+_NEGATIVE = re.compile(r"-[0-9]+([.,][0-9]+)?")
 
 #: ``-o -``: to standard output.
 STDOUT = Path("-")
@@ -38,6 +40,8 @@ _DATABASE = b"SQLite format 3\0"
 def safe_cell(text: str) -> str:
     """A cell that a spreadsheet shows as it is: formulas are disarmed, control characters are escaped."""
     shown = one_line(text)
+    if _NEGATIVE.fullmatch(text):
+        return shown
     return "'" + shown if text.lstrip().startswith(_FORMULA) or text.startswith(_FORMULA) else shown
 
 

@@ -90,17 +90,17 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
         person = selection.people[student]
         for at, (name, column) in enumerate(zip(selection.exercises, columns, strict=True)):
             theirs, ours = column.cells.get(person.canvas_id, ""), scores[at]
-            if not ours and not is_safe(theirs):
+            weaker = theirs.upper() == "EX" or (student, name) in blind
+            if not theirs or (ours and (options.overwrite or not weaker)):
+                continue
+            scores[at] = theirs if is_safe(theirs) else ""
+            if not scores[at]:
                 notes.append(
                     f"Canvas' own {one_line(theirs)!r} for {one_line(student)} {name} begins like a formula"
                     " and is left out: the import takes it away there."
                 )
-                continue
-            weaker = theirs.upper() == "EX" or ((student, name) in blind and is_safe(theirs))
-            if not ours or (theirs and weaker and not options.overwrite):
-                scores[at] = theirs
-                if ours and not _same(theirs, ours):
-                    selection.written.kept.append(f"{student} {name} ({theirs})")
+            elif ours and not _same(theirs, ours):
+                selection.written.kept.append(f"{student} {name} ({theirs})")
         login = person.login if person.canvas_id and is_safe(person.login) else ""  # as Canvas wrote it
         ids = person.canvas_id, person.sis_user_id, login
         rows.append([person.name or student, *ids, person.section, *scores])
@@ -167,14 +167,13 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
         rows.append([person.moodle_key, for_moodle(person.name), mail, *scores])
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
-    if rows:
-        most = {exercise.id: number(exercise.max_points) for exercise in results.exercises()}
-        points = ", ".join(f"{name} {most[name]}" for name in selection.exercises)
-        selection.written.notes += [
-            _how_to_map(rows),
-            f"The scores are written as points of the exercise ({points}): give the grade item in Moodle the"
-            " same maximum grade.",
-        ]
+    most = {exercise.id: number(exercise.max_points) for exercise in results.exercises()}
+    points = ", ".join(f"{name} {most[name]}" for name in selection.exercises)
+    selection.written.notes += [
+        _how_to_map(rows),
+        f"The scores are written as points of the exercise ({points}): give the grade item in Moodle the"
+        " same maximum grade.",
+    ]
     return selection.written
 
 

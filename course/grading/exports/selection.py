@@ -140,7 +140,7 @@ def select(
     key = " or ".join(needs.columns) if needs else ""
     if results.roster is not None:
         # A roster in which nobody has the platform's key: a list of all students would hide that.
-        if needs is not None and not options.partial and not _has_any(results.roster, needs):
+        if needs is not None and not _has_any(results.roster, needs):
             message = f"{results.roster.called} {needs.absent()}. Nothing was written."
             raise MissingCapabilityError(message, help=needs.give, code="unmatched_students")
         people, unmatched = results.roster.match(results.students(), results.downloads)
@@ -183,12 +183,21 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
             " exercises and without --only, looks for it.",
             code="not_graded_yet",
         )
+    mine = [item for item in asked if item.student not in left_out]
+    if not any(item.score is not None for item in mine) and (left_out or not mine):
+        raise MissingCapabilityError(
+            "No student in the roster has a score for this export. Nothing was written.",
+            help=f"Is it the roster of this class? Not in it: {some(sorted(map(repr, left_out)), SHOWN)}."
+            if left_out
+            else f"Nobody handed in {', '.join(selection.exercises)}.",
+            code="unmatched_students",
+        )
     if options.zeros:
         return
     unseen = [
         f"{item.student!r} {item.exercise} ({item.verdict.error.code if item.verdict.error else 'no reason'})"
-        for item in asked
-        if item.unsettled and item.student not in left_out
+        for item in mine
+        if item.unsettled
     ]
     if unseen:
         raise MissingCapabilityError(
@@ -198,7 +207,7 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
             code="unseen_zeros",
         )
     unowned = selection.results.unowned()
-    if unowned and any(item.missing and item.student not in left_out for item in asked):
+    if unowned and any(item.missing for item in mine):
         raise MissingCapabilityError(
             f"{len(unowned)} of unknown owner may be the work of a student who counts as having handed in"
             f" nothing: {some(unowned, SHOWN)}. Nothing was written.",

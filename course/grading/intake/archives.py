@@ -211,13 +211,12 @@ def _compressed(path: Path, kind: str, meter: downloads.Meter) -> list[tuple[str
 @dataclass(frozen=True)
 class _Held:
     """A zip whose members are all harmless: their names there, by those without the folders around all of
-    them; by these, what may be code; the manifest of ``course submit``, if it has one; and the names of work
-    in folders that count nowhere. What cannot be read is why."""
+    them; by these, what may be code, and by its name there what lies in folders that count nowhere; and the
+    manifest of ``course submit``, if it has one. What cannot be read is why."""
 
     names: dict[str, str]
     files: dict[str, bytes | RefusedError]
     manifest: dict[str, Any] | RefusedError
-    aside: tuple[str, ...] = ()
 
 
 #: Characters of what the library says of damage; it quotes names.
@@ -260,16 +259,25 @@ def _read(path: Path, wanted: Callable[[str, str], bool]) -> _Held:
     if _listed(path) > MAX_LISTED:
         raise _refused(path, "it holds tens of thousands of files")
     with zipfile.ZipFile(path) as archive:
-        members = _checked_members(path, archive.infolist())
+        listed = [(_slashed(info), info) for info in archive.infolist() if not info.is_dir()]
+        if any(downloads.too_deep(name) for name, _ in listed):
+            raise _refused(path, downloads.DEEP)
+        foreign = downloads.in_environment([name for name, _ in listed])
+        own = [(name, info) for name, info in listed if not foreign(name)]
+        members = _checked_members(path, [info for name, info in own if not downloads.in_clutter(name)])
+        around = posixpath.commonpath([name.rpartition("/")[0] for name in members] or [""])
+        members = {name.removeprefix(f"{around}/"): info for name, info in members.items()}
         names = {name: info.filename for name, info in members.items()}
+        beside = [info for name, info in own if downloads.lies_aside(name)]
+        aside = _tried(path, lambda: _checked_members(path, beside))
         files = {
-            name: _tried(path, functools.partial(_unpacked, path, archive, members[name]))
-            for name, raw in names.items()
-            if wanted(name, raw)
+            name: _tried(path, functools.partial(_unpacked, path, archive, info))
+            for name, info in (members | (aside if isinstance(aside, dict) else {})).items()
+            if wanted(name, info.filename)
         }
         info = members.get(MANIFEST)
         found = _tried(path, lambda: _read_manifest(path, _unpacked(path, archive, info))) if info else {}
-        return _Held(names, files, found, tuple(filter(downloads.lies_aside, archive.namelist())))
+        return _Held(names, files, found)
 
 
 def _listed(path: Path) -> int:
@@ -285,21 +293,21 @@ def _refused(path: Path, why: str) -> RefusedError:
     return RefusedError("refused_archive", f"{quoted(path.name)}: {why}.", advice)
 
 
-def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
-    """The members by name, without the folders around all of them; every one is harmless."""
-    plain = [info.filename.replace("\\", "/") for info in infos if not info.is_dir()]
-    if any(map(downloads.too_deep, plain)):
-        raise _refused(path, downloads.DEEP)
-    unwanted = downloads.clutter(plain)
-    files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
+def _slashed(info: zipfile.ZipInfo) -> str:
+    """A member's name with plain slashes."""
+    return info.filename.replace("\\", "/")
+
+
+def _checked_members(path: Path, files: list[zipfile.ZipInfo]) -> Members:
+    """These members by name; every one is harmless."""
     if len(files) > limits.MAX_FILES:
         raise _refused(path, f"it holds more than {limits.MAX_FILES} files")
-    code = (info for info in files if downloads.may_be_code(info.filename.replace("\\", "/")))
+    code = (info for info in files if downloads.may_be_code(_slashed(info)))
     if sum(info.file_size for info in code) > MAX_UNPACKED:
         raise _refused(path, f"its files unpack to more than {MAX_UNPACKED >> 20} MB")
     members: Members = {}
     for info in files:
-        name = PurePosixPath(info.filename.replace("\\", "/"))
+        name = PurePosixPath(_slashed(info))
         kind = stat.S_IFMT(info.external_attr >> 16)
         if name.is_absolute() or ".." in name.parts or ":" in info.filename:
             raise _refused(path, "a file in it has a path that leads outside")
@@ -314,8 +322,7 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
         members[name.as_posix()] = info
     if files and not members:  # beside files of its own, an archive in it is left alone
         raise _refused(path, "it holds nothing but another archive")
-    around = posixpath.commonpath([name.rpartition("/")[0] for name in members] or [""])
-    return {name.removeprefix(f"{around}/"): info for name, info in members.items()}
+    return members
 
 
 def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
@@ -550,8 +557,8 @@ def _outlines(
     kind = downloads.kind_of(path.name, content)
     if kind == "a zip archive" or path.suffix.casefold() == ".zip":
         held = _given(_held(path))
-        wanted = [name for name in held.files if held.names[name] not in skip]
-        files = [(held.names[name], _given(held.files[name])) for name in wanted]
+        named = ((held.names.get(name, name), content) for name, content in held.files.items())
+        files = [(name, _given(content)) for name, content in named if name not in skip]
     elif kind in _TARS:
         files = _compressed(path, kind, meter)
     else:
@@ -564,10 +571,7 @@ def _outlines(
             yield "", digest, (), (), "", 0, kind
         return
     if not files and not _is_record(path):
-        without = f"{kind} without a file of code"
-        if kind == "a zip archive" and (aside := _given(_held(path)).aside):
-            without = f"{kind} with code only where none is looked for: {some([*map(quoted, aside)], _SHOWN)}"
-        yield "", hashlib.sha256(content).hexdigest(), (), (), "", 0, without
+        yield "", hashlib.sha256(content).hexdigest(), (), (), "", 0, f"{kind} without a file of code"
     for name, found in files:
         what = downloads.kind_of(name, found)
         digest = hashlib.sha256(found).hexdigest()

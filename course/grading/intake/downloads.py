@@ -102,10 +102,12 @@ class Place:
 
     Attributes:
         files: name the student gave -> path, where the folder is shared; None for a folder of one's own.
+        top: the folder that was handed in, where folders around everything were passed over.
     """
 
     root: Path
     files: tuple[tuple[str, Path], ...] | None = None
+    top: Path | None = None
 
     def find(self, wanted: str, inside: str) -> list[Path]:
         """Files that a name may mean, at the top or in a subfolder, those with exactly that name first; none
@@ -133,7 +135,7 @@ class Place:
             if "." in inside[0][0] or any(is_folder_meant(inside[0][0], one) for one in known):
                 break
             root = inside[0][1]
-        return self if root is self.root else Place(root)
+        return self if root is self.root else Place(root, top=self.root)
 
     def archives(self) -> list[Path]:
         """The zip files, by name."""
@@ -477,6 +479,11 @@ def is_clutter(name: str) -> bool:
     return _CLUTTER.fullmatch(name) is not None
 
 
+def in_clutter(name: str) -> bool:
+    """Whether a path leads to, or through, what is no student's work."""
+    return any(map(is_clutter, name.split("/")))
+
+
 def lies_aside(name: str) -> bool:
     """Whether a path leads to what a student may have written and put where nothing is graded, such as
     ``build`` or ``.vscode``."""
@@ -484,19 +491,19 @@ def lies_aside(name: str) -> bool:
     return (
         file.casefold().endswith(HANDED_IN)
         and not is_clutter(file)
-        and any(map(is_clutter, folders))
+        and in_clutter(name)
         and not any(map(_MACHINES.fullmatch, folders))
     )
 
 
-def clutter(names: Iterable[str]) -> Callable[[str], bool]:
-    """Whether one of these paths lies in something that is no student's work, such as an environment."""
+def in_environment(names: Iterable[str]) -> Callable[[str], bool]:
+    """Whether one of these paths lies in a virtual environment."""
     environments = {name.rpartition("/")[0] for name in names if name.rpartition("/")[2] == _ENVIRONMENT}
     environments.discard("")
 
     def inside(name: str) -> bool:
         above = (name[: at.start()] for at in re.finditer("/", name)) if environments else ()
-        return any(map(is_clutter, name.split("/"))) or not environments.isdisjoint(above)
+        return not environments.isdisjoint(above)
 
     return inside
 
@@ -606,7 +613,7 @@ def _in_tar(archive: tarfile.TarFile, most: int, total: int) -> Iterator[tuple[s
         name = _text(member.name.removeprefix("./"))
         if too_deep(name):
             raise TooMuchError(DEEP)
-        if not (member.isreg() and may_be_code(name)) or any(map(is_clutter, name.split("/"))):
+        if not (member.isreg() and may_be_code(name)) or (in_clutter(name) and not lies_aside(name)):
             continue
         total -= member.size
         if total < 0:

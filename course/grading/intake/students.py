@@ -634,11 +634,15 @@ def _files(place: Place) -> list[tuple[str, Path]]:
         files = [(name, path) for name, path in place.files if not is_meant(name, MANIFEST)]
         return [(name, path) for name, path in files if path.is_file() and not path.is_symlink()]
     aside: list[tuple[Path, str, int]] = []
-    found = list(_below(place.root, "", 0, iter(range(_ENTRIES)), aside))
+    top = place.top or place.root
+    passed = len(place.root.relative_to(top).parts)
+    found = list(_below(top, "", -passed, iter(range(_ENTRIES)), aside))
     left = iter(range(_ENTRIES))
     for folder, above, depth in aside:  # last, and only for what a person may have written
         there = _below(folder, above, depth, left, None)
         found += [(name, path) for name, path in there if lies_aside(name)]
+    if passed:  # what lies beside the folder that was passed over is "../build/work.py"
+        return [(Path(os.path.relpath(path, place.root)).as_posix(), path) for _, path in found]
     return found
 
 

@@ -35,7 +35,7 @@ from course.grading.gradebook.records import (
     SubmittedAt,
 )
 from course.grading.results.late import Policy, lateness, may_change, parse_policy
-from course.grading.results.roster import FOR_TESTS, Person, Roster
+from course.grading.results.roster import FOR_TESTS, Person, Roster, spelled
 from course.printable import command, one_line, quoted, some
 from course.scoring.verdict import Problem, Verdict, format_points, not_graded
 
@@ -235,7 +235,7 @@ class Results:
         if name in students:
             return name
         # A name with characters that no list of ours can show is spelled out in all of them.
-        shown = [student for student in students if one_line(student) == name]
+        shown = [student for student in students if spelled(one_line(student)) == spelled(name)]
         if len(shown) == 1:
             return shown[0]
         if self.roster is None:

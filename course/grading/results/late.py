@@ -40,7 +40,7 @@ import msgspec
 from course.catalog.reading import Document, read_document
 from course.errors import ContentError, MissingCapabilityError, UsageError
 from course.grading.gradebook.records import SubmittedAt
-from course.grading.results.roster import csv_reader, headings_of, moodle_key
+from course.grading.results.roster import csv_reader, headings_of, moodle_key, spelled
 from course.strangers import decoded, read_bytes, toml
 
 FORMAT_VERSION = 1
@@ -95,7 +95,8 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         found = exact or [item for item in self.deadline if item.exercise == "*"]
         if not found:
             return None
-        mine = (item for item in self.extension if item.student in student_names)
+        names = {*map(spelled, student_names)}
+        mine = (item for item in self.extension if spelled(item.student) in names)
         days = (item.days for item in mine if item.exercise in {"*", exercise})
         return found[0].due.timestamp() + _DAY_S * max([granted_days, *days])
 
@@ -181,7 +182,9 @@ def unknown_names(policy: Policy, exercises: Mapping[str, object], students: set
     named = {item.exercise for item in policy.deadline} | {item.exercise for item in policy.extension}
     named.discard("*")
     unknown = [f"exercise {name}" for name in sorted(named - exercises.keys())]
-    return unknown + [f"student {name}" for name in sorted({e.student for e in policy.extension} - students)]
+    there = {*map(spelled, students)}
+    names = {item.student for item in policy.extension if spelled(item.student) not in there}
+    return unknown + [f"student {name}" for name in sorted(names)]
 
 
 def in_days(seconds: float) -> str:

@@ -238,8 +238,12 @@ def _key(column: str, value: str) -> str:
     """A cell for comparison."""
     if column == "name":  # one spelling of accents, letter case and spaces
         return " ".join(unicodedata.normalize("NFKC", value).casefold().split())
-    # Of ids one Unicode spelling: macOS decomposes names.
-    return value.casefold() if column in {"email", "login"} else unicodedata.normalize("NFC", value)
+    return value.casefold() if column in {"email", "login"} else spelled(value)
+
+
+def spelled(name: str) -> str:
+    """A name with its accents in one Unicode form, for comparison: macOS takes them apart."""
+    return unicodedata.normalize("NFC", name)
 
 
 def read_roster(path: Path) -> Roster:

@@ -148,9 +148,9 @@ def _of(one: Candidate, item: Unsettled) -> Assignment:
 
 def _lying(results: Results, student: str, file: str) -> tuple[Path, str] | None:
     """A file by its name in the student's folder, or its name on the platform; None if it is not there."""
-    options = results.book.run_options()
+    known = results.book.run_options() | results.book.meta()  # an older version noted it with the run
     try:
-        found = class_list(Path(options.get("folder", "")), options.get("layout", "auto"))
+        found = class_list(Path(known.get("folder", "")), known.get("layout", "auto"))
     except CourseError:
         return None
     place = next((one.place for one in as_known(found, results.book) if one.name == student), None)
@@ -158,7 +158,7 @@ def _lying(results: Results, student: str, file: str) -> tuple[Path, str] | None
         return None
     if place.files is None:
         # As lists call it: a folder around everything was passed over.
-        return _cut(place.root / file) or _cut(place.unwrapped(()).root / file)
+        return _cut(place.unwrapped(()).root / file) or _cut(place.root / file)
     above, _, member = file.partition("/")
     return next(((path, member) for name, path in place.files if name == above), None)
 

@@ -4,7 +4,6 @@ import contextlib
 import os
 import secrets
 import time
-import unicodedata
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -35,7 +34,7 @@ from course.grading.results.effective import (
     counting,
     replacing,
 )
-from course.grading.results.roster import Roster
+from course.grading.results.roster import Roster, spelled
 from course.grading.running import folder as runs
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
@@ -292,11 +291,11 @@ class _Run:
         self, members: ClassList, graders: Unpacked, folder: Path, options: RunOptions, book: Gradebook
     ) -> None:
         known = as_known(members, book)
-        only = {
-            one.name for was, one in zip(members.students, known, strict=True) if was.name in options.only
-        }
-        only |= {*options.only}
-        self._students = [one for one in known if not only or one.name in only]
+        both = zip(members.students, known, strict=True)
+        asked = {*map(spelled, options.only)}
+        self._students = [
+            one for was, one in both if not asked or asked & {spelled(was.name), spelled(one.name)}
+        ]
         self.names = {one.name for one in self._students}
         self._left_aside = {one.name for one in known} - self.names
         self.unread: set[tuple[str, str]] = set()
@@ -310,8 +309,8 @@ class _Run:
         self._book = book
         self._versions = {exercise.id: graders.version(exercise.id) for exercise in self._exercises}
         self._times: list[SubmittedAt] = []
-        asked = not options.exercises or QUIZ in options.exercises
-        self._bank = _bank(self._catalog) if asked else Bank(())
+        with_quiz = not options.exercises or QUIZ in options.exercises
+        self._bank = _bank(self._catalog) if with_quiz else Bank(())
         self._with_quiz = bool(self._bank.ids)
         self._quiz_known = QUIZ in (book.looked() or {})
         self._quiz_version = quiz_version(self._bank)
@@ -332,12 +331,14 @@ class _Run:
     def _note_facts(self) -> None:
         options, book = self._options, self._book
         course = self._catalog
-        book.set_meta(seed=str(self.summary.seed), course=course.course_id, version=course.version)
+        book.set_meta(
+            seed=str(self.summary.seed), course=course.course_id, version=course.version,
+            folder=one_line(str(self._folder.absolute())), layout=options.layout,
+        )  # fmt: skip
         terms = options.terms
         facts = {
             "level": terms.level, "at_least": terms.at_least, "timeout": terms.timeout,
-            "snapshot": self.summary.graders, "folder": one_line(str(self._folder.absolute())),
-            "layout": options.layout,
+            "snapshot": self.summary.graders,
         }  # fmt: skip
         if not (options.resume and book.run_options().get("snapshot")):
             book.keep_snapshot(self.summary.graders, self._graders.snapshot.packed)
@@ -598,7 +599,7 @@ def as_known(members: ClassList, book: Gradebook) -> list[Student]:
 def _marks(name: str, who: PlatformIdentity | None) -> list[object]:
     """What tells a student apart, the surest first."""
     if who is None:
-        return [("", unicodedata.normalize("NFC", name))]
+        return [("", spelled(name))]
     keys = (who.sid, who.email.casefold()) if who.source == "gradescope" else (who.key,)
     return [(who.source, column, key) for column, key in enumerate(keys) if key]
 
@@ -628,8 +629,8 @@ def _check_assignment(members: ClassList, book: Gradebook, out: Path) -> None:
 def _members(folder: Path, options: RunOptions) -> ClassList:
     found = class_list(folder, options.layout)
     if options.only:
-        unknown = sorted(set(options.only) - {student.name for student in found.students})
-        if unknown:
+        there = {spelled(student.name) for student in found.students}
+        if unknown := [name for name in options.only if spelled(name) not in there]:
             message = f"{folder} has no student {unknown[0]!r}."
             advice = "--only takes the name of a student's folder."
             raise UsageError(message, help=advice, code="student_not_found")

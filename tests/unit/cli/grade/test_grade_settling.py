@@ -6,6 +6,7 @@ import io
 import json
 import shutil
 import tarfile
+import unicodedata
 
 import msgspec
 import pytest
@@ -432,6 +433,52 @@ def test_a_file_assigned_to_the_wrong_student_is_taken_back(course, here):
     assert row("eve") == ("graded", "", "10")
     for words in (("eve", "hw.py", "--lift"), ("--lift",), ("eve", "--lift", "--accept-names")):
         assert course("grade", "assign", "out", *words).code == 2
+
+
+def test_a_name_means_the_file_in_the_folder_that_was_graded_last(course, here):
+    shutil.copytree(here / "class", here / "second")
+    (here / "second" / "ada" / "better.py").write_text(SOURCE.replace("return x", "return [x]"))
+    (here / "class" / "ada" / "old.py").write_text(SOURCE)
+    course("grade", "run", "second", "--out", "out", "--exercise", "doubling", "--resume")
+    words = ("grade", "assign", "out", "ada")
+    more = ("--exercise", "doubling", "--reason", "x", "--json")
+    (one,) = course(*words, "better.py", *more).json["assigned"]
+    assert (one["file"], one["score_after"]) == ("better.py", 10.0)
+    assert course(*words, "old.py", *more).json["error"]["code"] == "file_not_found"
+
+
+@pytest.mark.parametrize("beside", ["build/hers.py", "x/build/hers.py"])
+def test_what_lies_in_a_build_folder_beside_a_folder_around_everything_is_listed(course, here, beside):
+    for name in ("x/hw.py", beside):
+        (here / "class" / "eve" / name).parent.mkdir(parents=True, exist_ok=True)
+        (here / "class" / "eve" / name).write_text(SOURCE + f"# {name}\n")
+    course("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+    shown = "build/hers.py" if beside.startswith("x") else "../build/hers.py"
+    listed = course("grade", "assign", "out", "--json").json["unsettled"]
+    (files,) = ([one["file"] for one in item["files"]] for item in listed if item["student"] == "eve")
+    assert files == ["hw.py", shown]
+    for _ in range(2):  # from the list, and then by its name alone
+        words = ("grade", "assign", "out", "eve", shown, "--exercise", "doubling", "--reason", "x", "--json")
+        assert course(*words).json["assigned"][0]["score_after"] == 10.0
+
+
+def test_a_name_may_be_typed_with_other_accents_than_the_folder_has(course, here):
+    mac, typed = (unicodedata.normalize(form, "Zoë") for form in ("NFD", "NFC"))
+    shutil.copytree(here / "class" / "ada", here / "class" / mac)
+    (here / "late.toml").write_text(
+        'format_version = 1\npoints_per_day = 1\n[[deadline]]\nexercise = "*"\ndue = 2026-01-01T00:00:00Z\n'
+        f'[[extension]]\nstudent = "{typed}"\ndays = 2\n'
+    )
+    (here / "times.csv").write_text(f"student,exercise,submitted_at\n{typed},doubling,2026-01-03T00:00:00Z\n")
+    only = ("--exercise", "doubling", "--only", typed, "--resume", "--json")
+    assert course("grade", "run", "class", "--out", "out", *only).code == 6, "it is bob's"
+    assert course("grade", "explain", "out", typed, "doubling").code == 0
+    late = ("late", "out", "--policy", "late.toml", "--times", "times.csv", "--json")
+    told = course("grade", *late).json
+    assert (told["late"], told["unknown_names"]) == ([], [])
+    assert course("grade", "override", "out", typed, "doubling", "--score", "3", "--reason", "x").code == 0
+    students = {row["student"] for row in read_csv(here / "out" / "grades.csv")}
+    assert (mac in students, typed in students) == (True, False)
 
 
 def test_a_score_by_hand_for_nothing_is_no_work_that_could_not_be_graded(course, here):

@@ -255,16 +255,20 @@ def test_a_score_that_canvas_has_is_no_zero_where_nothing_was_handed_in(course, 
     assert ran.json["kept"] == ["petitgus_107 doubling (8.50)"]
     assert course(*TO_CANVAS, "canvas.csv", "--missing", "zero", "--overwrite").code == 0
     assert '"gus","A","0"' in (out / "canvas.csv").read_text()
-    write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", ",gus,A,-1"))
+    write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", ",gus,A,-1.5"))
     assert course(*TO_CANVAS, "canvas.csv", "--missing", "zero").code == 0
-    assert '"gus","A","0"' in (out / "canvas.csv").read_text(), "what begins like a formula is not written"
+    assert '"gus","A","-1.5"' in (out / "canvas.csv").read_text(), "points below zero are no formula"
+    write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", ",gus,A,=1+1"))
+    for more in ((), ("--missing", "zero")):
+        course(*TO_CANVAS, "canvas.csv", *more).ends(0, "'=1+1' for petitgus_107 doubling begins like a")
+        assert '"gus","A",""' in (out / "canvas.csv").read_text()
 
 
 def test_what_canvas_has_and_we_have_not_is_written_back(course, out):
     write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", ',gus,A,"7,50"'))
     assert course(*TO_CANVAS, "canvas.csv", "--overwrite").code == 0
     assert '"gus","A","7,50"' in (out / "canvas.csv").read_text()
-    for theirs, ours in (("-1.5", ""), ("=cmd|'/C calc'!A0", ""), ("N/A", "N/A")):
+    for theirs, ours in (("-1.5", "-1.5"), ("=cmd|'/C calc'!A0", ""), ("N/A", "N/A")):
         write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", f',gus,A,"{theirs}"'))
         ran = course(*TO_CANVAS, "canvas.csv")
         assert ran.code == 0

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import platform
+import shutil
 import zipfile
 
 import numpy as np
@@ -47,6 +48,15 @@ def test_submit_keeps_what_it_replaces(course, workspace, write):
     body = course("submit", "-o", "mine.zip", "--json").json
     assert (workspace / body["backup"]).read_bytes() == b"something else"
     assert course("submit", "-o", "mine.zip", "--json").json["backup"] is None
+
+
+def test_in_a_clone_an_untouched_stub_is_no_work(course, workspace, write):
+    course("start", "halving")
+    write("RIGHT", "wrong")
+    shutil.rmtree(workspace / ".course")
+    body = course("submit", "--json").json
+    assert [file["path"] for file in body["files"]] == ["doubling/doubling.py"]
+    assert body["left_out"] == [{"path": "halving/halving.py", "action": "still the stub"}]
 
 
 def test_submit_leaves_an_untouched_stub_out_and_says_what_the_checks_say_of_the_rest(

@@ -77,12 +77,16 @@ def write(results, name, tmp_path, options=OPTIONS):
     return part if part.exists() else tmp_path / usual
 
 
+def is_formula(cell):
+    return cell.startswith(("=", "+", "-", "@", "\uff1d")) and not re.fullmatch(r"-[0-9]+([.,][0-9]+)?", cell)
+
+
 def test_the_table_has_a_row_for_everybody_and_no_formula(results, tmp_path):
     path = write(results, "csv", tmp_path)
     rows = read_csv(path)
     assert len(rows) == len({row["student"] for row in rows}) == len(HOSTILE) + 3
     everywhere = [cell for row in rows for cell in row.values()]
-    assert not [cell for cell in everywhere if cell.startswith(("=", "+", "-", "@", "\uff1d"))]
+    assert not [cell for cell in everywhere if is_formula(cell)]
     assert all(cell.isprintable() for cell in everywhere)
     by_name = {row["student"]: row for row in rows}
     assert by_name["late"] | {"graded_at": ""} == by_name["late"] | {
@@ -334,11 +338,18 @@ def test_an_exercise_that_nobody_handed_in_has_no_column(results, tmp_path):
     for name in ("moodle", "canvas"):
         export(results, name, tmp_path, tmp_path / "all.csv", everything)
         assert (tmp_path / "all.csv").read_bytes() == write(results, name, tmp_path).read_bytes()
+
+
+@pytest.mark.parametrize("missing", ["blank", "zero"])
+@pytest.mark.parametrize("name", ["canvas", "moodle", "gradescope"])
+def test_a_roster_of_another_class_writes_no_file(results, tmp_path, name, missing):
     results.roster = Roster((Person("nobody", moodle_key="7", canvas_id="7"),))
-    written = export(
-        results, "moodle", tmp_path, tmp_path / "none.csv", dataclasses.replace(OPTIONS, partial=True)
-    )
-    assert (written.rows, written.notes) == (0, [])
+    options = dataclasses.replace(OPTIONS, partial=True, missing=missing)
+    with pytest.raises(MissingCapabilityError, match="No student in the roster has a score") as caught:
+        export(results, name, tmp_path, None, options)
+    assert (caught.value.code, caught.value.exit_code) == ("unmatched_students", 4)
+    assert "'late'" in caught.value.help or "more" in caught.value.help
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("name", FOR_STUDENTS)
@@ -408,7 +419,7 @@ def test_points_are_written_without_noise():
 @given(st.text(alphabet=st.characters(exclude_categories=["Cs"])))
 def test_no_text_becomes_a_formula_or_moves_the_cursor(text):
     cell = safe_cell(text)
-    assert not cell.startswith(("=", "+", "-", "@"))
+    assert not is_formula(cell)
     assert cell.isprintable()
 
 
@@ -416,6 +427,13 @@ def test_no_two_ids_become_one_cell():
     cells = [safe_cell(name) for name in ("=1", "'=1", "''=1", "1", "-1", "'-1")]
     assert len(set(cells)) == len(cells)
     assert [is_safe(text) for text in ("x", "=x", "a\nb")] == [True, False, False]
+    assert [is_safe(text) for text in ("-1.5", "-2,5", "+1", "-1+1", "-1\n")] == [
+        True,
+        True,
+        False,
+        False,
+        False,
+    ]
 
 
 def test_a_file_that_cannot_be_finished_leaves_the_old_one(tmp_path):

@@ -218,8 +218,15 @@ ODDLY = {
     "7z": ({"doubling.7z": b"7z\xbc\xaf\x27\x1c rest"}, "", "a 7z archive, which nothing here opens"),
     "rar": ({"work.rar": b"Rar!\x1a\x07\x00"}, "", "a rar archive, which nothing here opens"),
     "a build in a zip": (
-        {"all.zip": zipped({"build/doubling.py": SOURCE})}, "",
-        "a zip archive with code only where none is looked for: 'build/doubling.py'",
+        {"all.zip": zipped({"build/doubling.py": SOURCE})}, "all.zip/build/doubling.py", "",
+    ),
+    "a build in a tar": (
+        {"all.tar": in_tar("w", **{"build/doubling.py": SOURCE, "build/__pycache__/a.py": SOURCE})},
+        "all.tar/build/doubling.py", "",
+    ),
+    "a build made on Windows": (
+        {"all.zip": zipped({"w\\build\\doubling.py": SOURCE, "w\\notes.md": b"x"})},
+        "all.zip/w/build/doubling.py", "",
     ),
     "damaged": ({"all.tar.gz": b"\x1f\x8b and no more"}, "", "it cannot be read (it is damaged)"),
     "PDF": ({"doubling.pdf": b"%PDF-1.7"}, "", "a PDF document"),

@@ -5,6 +5,7 @@ from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 from typing import Annotated
+from zoneinfo import ZoneInfo
 
 import msgspec
 
@@ -38,6 +39,7 @@ from course.printable import command, counted, one_line, quoted, some
 from course.scoring.verdict import format_points, in_points
 
 _SHOWN = 20
+_ZONE = '`zone = "Europe/Berlin"`'
 
 
 def override(
@@ -153,17 +155,17 @@ def late(
         unknown_time = sum(item.submitted_at is None for item in handed_in) if results.policy else 0
         unknown = unused + _unknown(results, known)
         unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
-        short = [one_line(item.student) for item in late_ones if results.hangs_on_an_extension(item)]
+        short = [one_line(item.student) for item in late_ones if results.hangs_on_a_day(item)]
         extended = _extended(results, known, listed) if isinstance(listed, Worksheet) else []
     if unsure:
         console.warn(
             f"{times} says no time zone. If the clock changed near the deadline, an hour may cost or spare"
-            f" points of {some(unsure, _SHOWN)}: give their times in a list, with the distance from UTC."
+            f" points of {some(unsure, _SHOWN)}: name the zone in the policy, as in {_ZONE}."
         )
     if short:
         console.warn(
-            f"A day of an extension has 24 hours. If the clock changed within it, an hour may cost points of"
-            f" {some(short, _SHOWN)}: with `days = 1.042`, say, a day is an hour longer."
+            f"A day has 24 hours. If the clock changed within one, an hour may cost points of"
+            f" {some(short, _SHOWN)}: with {_ZONE} in the policy, a day ends at the same time of day."
         )
     if extended:
         console.warn(
@@ -213,7 +215,8 @@ def _times(
     students = {person.moodle_key: student for student, person in found.items()}
     unused = [one.student for one in people.people if one.moodle_key in listed.times.keys() - students.keys()]
     told = [f"one student for the row of {student} in {listed.path}" for student in unused]
-    return worksheet_times(listed, students, name, due.tzinfo), told
+    zone = ZoneInfo(results.policy.zone) if results.policy and results.policy.zone else due.tzinfo
+    return worksheet_times(listed, students, name, zone), told
 
 
 def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:

@@ -52,6 +52,8 @@ _NOTHING = {
     ),
 }
 _NOBODY = Looked()
+#: The shortest day that a clock has, in seconds.
+_ALMOST_A_DAY = 82_800.0
 _WITHOUT_SCORE = frozenset({"grader_error", MISSING, NOT_YET})
 
 
@@ -341,7 +343,8 @@ class Results:
         noted = self._exercises.get(key.exercise)
         most = verdict.max_score if noted is None or verdict.state == "graded" else noted.max_points
         submitted, witness = self._submitted(key)
-        late = self._late(key, submitted)
+        due = self._due(key)
+        late = None if due is None or submitted is None else lateness(submitted, due)
         override = self._overrides.get((key.student, key.exercise))
         if override is not None and override.score is None:
             override = None
@@ -351,8 +354,8 @@ class Results:
         elif verdict.state in _WITHOUT_SCORE:
             score = None
         else:
-            if self.policy is not None and verdict.state == "graded":
-                penalty = self.policy.penalty(late, verdict.score, most)
+            if self.policy is not None and due is not None and verdict.state == "graded":
+                penalty = self.policy.penalty(late, verdict.score, most, due)
             score = verdict.score - penalty
         return Effective(
             result, score, most, self._passes(result, score, most), penalty, late, submitted, witness,
@@ -397,27 +400,25 @@ class Results:
         granted = person.extension_days or 0.0 if person else 0.0
         return self.policy.due(key.exercise, names, granted) if self.policy else None
 
-    def _late(self, key: Key, submitted: float | None) -> float | None:
-        due = self._due(key)
-        return None if due is None or submitted is None else lateness(submitted, due)
-
     def hangs_on_the_clock(self, one: Effective) -> bool:
         """Whether a time without a zone decides a penalty: clocks may have changed since the deadline."""
         return self._hangs(one, self._due(one.result.key), one.submitted_at)
 
-    def hangs_on_an_extension(self, one: Effective) -> bool:
-        """Whether an hour decides a penalty, and clocks may have changed while an extension ran."""
+    def hangs_on_a_day(self, one: Effective) -> bool:
+        """Whether an hour decides a penalty, and clocks may have changed in the days that it counts: those of
+        an extension, and those by which it is late."""
         first, last = (self._due(one.result.key, extended=extended) for extended in (False, True))
-        return first != last and self._hangs(one, first, last)
+        counts = first != last or (one.late or 0.0) > _ALMOST_A_DAY
+        return counts and self._hangs(one, first, max(last or 0.0, one.submitted_at or 0.0))
 
     def _hangs(self, one: Effective, first: float | None, last: float | None) -> bool:
         """Whether an hour decides a penalty, and clocks may have changed between two times."""
-        key, at = one.result.key, one.submitted_at
-        if self.policy is None or at is None or first is None or last is None or not may_change(first, last):
+        policy, due, at = self.policy, self._due(one.result.key), one.submitted_at
+        if policy is None or policy.zone or at is None or due is None or first is None or last is None:
             return False
-        score, hour = one.verdict.score, 3600.0
-        hours = (self._late(key, at + shift) for shift in (-hour, 0.0, hour))
-        return len({self.policy.penalty(late, score, one.max_score) for late in hours}) > 1
+        hours = [lateness(at + shift, due) for shift in (-3600.0, 0.0, 3600.0)]
+        costs = {policy.penalty(late, one.verdict.score, one.max_score, due) for late in hours}
+        return may_change(first, last) and len(costs) > 1
 
     def _passes(self, result: Result, score: float | None, most: float) -> bool:
         if score is None:

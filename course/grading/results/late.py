@@ -7,6 +7,7 @@
     at_most_percent = 50             # no penalty is larger
     closed_after_days = 7            # later than this scores nothing
     trust = ["list", "gradescope"]   # whose times count, the most trusted first; "mtime" if you say so
+    zone = "Europe/Berlin"           # a day ends at the same time of its clock; without it, after 24 hours
 
     [[deadline]]
     exercise = "integrators"         # "*" for every exercise without one of its own
@@ -34,6 +35,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import msgspec
 
@@ -83,6 +85,7 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     at_most_percent: _Share = 100.0
     closed_after_days: _Days | None = None
     trust: tuple[Source, ...] = ("list", "gradescope")
+    zone: str = ""
 
     def due(self, exercise: str, student_names: tuple[str, ...], granted_days: float = 0.0) -> float | None:
         """When it is due for this student, in seconds since 1970; None if the policy does not say.
@@ -98,18 +101,29 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         names = {*map(spelled, student_names)}
         mine = (item for item in self.extension if spelled(item.student) in names)
         days = (item.days for item in mine if item.exercise in {"*", exercise})
-        return found[0].due.timestamp() + _DAY_S * max([granted_days, *days])
+        first = found[0].due.timestamp()
+        last = first + _DAY_S * max([granted_days, *days])
+        return last - self._forward(first, last)
 
-    def penalty(self, late_s: float | None, score: float, maximum: float) -> float:
-        """The penalty for being late by so many seconds, in points."""
+    def penalty(self, late_s: float | None, score: float, maximum: float, due: float = 0.0) -> float:
+        """The penalty for being late by so many seconds after it was due, in points."""
         if late_s is None or late_s <= 60.0 * self.grace_minutes:
             return 0.0
-        if self.closed_after_days is not None and late_s > self.closed_after_days * _DAY_S:
+        by_clock = max(late_s + self._forward(due, due + late_s), _ROUNDING_S)
+        if self.closed_after_days is not None and by_clock > self.closed_after_days * _DAY_S:
             return score
-        days = math.ceil(late_s / _DAY_S)
+        days = math.ceil(by_clock / _DAY_S)
         base = maximum if self.of == "maximum" else score
         points = days * (self.percent_per_day / 100.0 * base + self.points_per_day)
         return min(points, self.at_most_percent / 100.0 * base, score)
+
+    def _forward(self, first: float, last: float) -> float:
+        """Seconds that the zone's clock was put forward between two times; 0 without a zone."""
+        if not self.zone:
+            return 0.0
+        within = (min(max(at, 0.0), _FAR_OFF) for at in (first, last))
+        was, now = (dt.datetime.fromtimestamp(at, ZoneInfo(self.zone)).utcoffset() for at in within)
+        return (now - was).total_seconds() if now is not None and was is not None else 0.0
 
 
 def lateness(submitted: float, due: float) -> float | None:
@@ -164,6 +178,11 @@ def parse_policy(text: str, name: str = "The late policy") -> Policy:
 
 def _check(document: Document[Policy]) -> None:
     policy = document.value
+    try:
+        ZoneInfo(policy.zone or "UTC")
+    except (ZoneInfoNotFoundError, ValueError, OSError):
+        fix = 'Write one as in "Europe/Berlin"; a system without a list of them needs `pip install tzdata`.'
+        document.fail(("zone",), f"{policy.zone!r} is no time zone that is known here.", fix=fix)
     exercises: set[str] = set()
     for index, deadline in enumerate(policy.deadline):
         if deadline.due.tzinfo is None:

@@ -487,5 +487,44 @@ def test_an_hour_of_summer_time_that_costs_points_of_an_extension_is_named(cours
         at = dt.datetime.fromisoformat(f"{due}T23:30:00+01:00") + dt.timedelta(days=min(days, 1))
         write(tmp_path, "times.csv", f"student,exercise,submitted_at\nAda_101,doubling,{at.isoformat()}\n")
         ran = course("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv")
-        named.append("points of Ada_101: with `days = 1.042`" in " ".join(ran.err.split()))
+        named.append("points of Ada_101: with `zone =" in " ".join(ran.err.split()))
     assert named == [True, False, False, False]
+
+
+@pytest.mark.parametrize(
+    ("day", "days", "handed_in", "costs"),
+    [
+        ("2026-10-24T23:59:00+02:00", 2, "2026-10-26T23:30:00+01:00", (0, 1)),  # two days and an hour
+        ("2026-10-24T23:59:00+02:00", 0, "2026-10-25T23:30:00+01:00", (1, 2)),
+        ("2026-10-24T23:59:00+02:00", 0, "2026-10-26T00:30:00+01:00", (2, 2)),
+        ("2027-03-27T23:59:00+01:00", 2, "2027-03-30T00:30:00+02:00", (1, 0)),  # two days less an hour
+        ("2027-03-27T23:59:00+01:00", 0, "2027-03-29T00:30:00+02:00", (2, 1)),
+        ("2026-10-25T02:30:00+02:00", 0, "2026-10-25T02:10:00+01:00", (1, 1)),  # the hour that there is twice
+    ],
+)
+def test_with_a_zone_a_day_ends_at_the_same_time_of_day(course, tmp_path, day, days, handed_in, costs):
+    with make_book(tmp_path / "out", {"Ada_101": RIGHT}):
+        pass
+    write(tmp_path, "times.csv", f"student,exercise,submitted_at\nAda_101,doubling,{handed_in}\n")
+    for zone, cost in zip(("Europe/Berlin", ""), costs, strict=True):
+        write(
+            tmp_path,
+            "late.toml",
+            f'format_version = 1\npoints_per_day = 1\nzone = "{zone}"\n[[deadline]]\nexercise = "*"\n'
+            f'due = {day}\n[[extension]]\nstudent = "Ada_101"\ndays = {days}\n',
+        )
+        told = course("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv", "--json")
+        assert sum(one["penalty"] for one in told.json["late"]) == cost
+        assert ("A day has 24 hours." in told.err) == bool(told.json["late"] and cost != costs[0])
+
+
+def test_a_zone_that_is_not_known_is_refused_by_its_line(course, tmp_path):
+    with make_book(tmp_path / "out", {"Ada_101": RIGHT}):
+        pass
+    for zone in ("Europe/Nowhere", "../etc", "Europe"):
+        write(tmp_path, "late.toml", f'zone = "{zone}"\n{POLICY}')
+        error = course("grade", "late", "out", "--policy", "late.toml", "--json").json["error"]
+        assert (error["code"], f"late.toml:1: zone: {zone!r}" in error["message"]) == (
+            "invalid_policy",
+            True,
+        ), error

@@ -5,6 +5,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from statistics import quantiles
 from typing import Annotated, Any
 
 from course import extras
@@ -338,6 +339,7 @@ def _show_summary(
     graded = summary.states["graded"]
     said = f"{graded} graded, {summary.passed} of them pass{_mark(summary)}. {summary.elapsed_s:.1f} s."
     console.line((said, "bold"))
+    _show_scores(console, summary)
     for state, words in (
         ("ungradable", "could not be graded"),
         ("grader_error", "hit a fault of the grader and are marked for regrading"),
@@ -364,6 +366,18 @@ def _show_summary(
         console.warn("Graded as plain processes (L1): submissions could read files and use the network.")
     files = "gradebook.sqlite, grades.csv, results.jsonl, report.html"
     console.note(f"Written: {out}/{files}. Seed {summary.seed}.")
+
+
+def _show_scores(console: Console, summary: Summary) -> None:
+    """How the class did in each exercise, where there are several grades."""
+    rows = []
+    for name, scores in summary.scores.items():
+        if len(scores) > 1:
+            low, middle, high = quantiles(scores, n=4, method="inclusive")
+            half = f"{format_points(low)} to {format_points(high)}"
+            rows.append((name, str(len(scores)), format_points(middle), half))
+    if rows and not console.quiet:
+        console.table(("exercise", "grades", "median", "half of them"), rows)
 
 
 def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = "") -> None:

@@ -29,7 +29,7 @@ from course.grading.exports.selection import (
     select,
 )
 from course.grading.results.effective import Effective, Results
-from course.grading.results.roster import Column, in_english, moodle_key, read_text
+from course.grading.results.roster import Column, as_there, in_english, moodle_key, read_text
 from course.printable import counted, one_line, some
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, format_points, in_points
 
@@ -307,7 +307,8 @@ def _read(path: Path) -> tuple[list[str], list[list[str]]]:
         headings = next(reader, [])
         missing = [name for name in (_KEY, _GRADE, _MODIFIED) if name not in in_english(headings)]
         if missing:
-            why = f"it has no column {missing[0]!r}, without which Moodle does not take it back"
+            wanted = as_there(missing[0], headings)
+            why = f"it has no column {wanted!r}, without which Moodle does not take it back"
             raise _wrong(path, why)
         for row in reader:
             if len(row) != len(headings):

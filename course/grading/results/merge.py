@@ -47,13 +47,17 @@ def merged(results: Results, new: Roster, *, lasting: bool = False) -> Merged:
     known = {person.student: name for name, person in found.items()}
     pairs = dict(_pairs(old, list(_stages(results, new, known))))
     earlier = {pairs[person.student].student: person for person in old.people if person.student in pairs}
-    own, people = "student" in new.headings, []
+    own, people = "student" in new.columns, []
     for row in new.people:
         before = earlier.get(row.student)
         if before is not None:
             student = _called(before, row, results, graded, own=own, known=before.student in known)
             joined = _joined(before, row, new, student)
-            if lasting and "Identifier" in new.headings and not before.moodle_key.isdigit():
+            if (
+                lasting
+                and new.columns.get("moodle_key", "moodle_key") != "moodle_key"
+                and not before.moodle_key.isdigit()
+            ):
                 joined = msgspec.structs.replace(joined, moodle_key=before.moodle_key or joined.moodle_key)
             people.append(joined)
         else:

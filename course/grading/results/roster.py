@@ -22,7 +22,7 @@ import csv
 import io
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -52,8 +52,8 @@ _MOODLE = {
     "moodle_key": "Identifier", "name": "Full name", "email": "Email address",
     "sis_user_id": "ID number", "login": "Username",
 }  # fmt: skip
-#: Moodle's worksheet in German, known by a heading that nothing else has.
-_GERMAN_SIGN = "zuletzt geändert (bewertung)"
+#: Moodle's worksheet in German, known by one of the headings that nothing else has.
+_GERMAN_SIGNS = {"vollständiger name", "zuletzt geändert (abgabe)", "zuletzt geändert (bewertung)"}
 _GERMAN = {
     "ID": "Identifier", "Vollständiger Name": "Full name", "E-Mail-Adresse": "Email address",
     "ID-Nummer": "ID number", "Anmeldename": "Username", "Bewertung": "Grade", "Bestwertung": "Maximum Grade",
@@ -116,8 +116,8 @@ class Roster:
     Attributes:
         people: the rows, in the order of the file.
         file: where it was read; empty if it is the one in a gradebook.
-        headings: of that file, if it is known.
-        columns: the heading of each of our columns that it has.
+        headings: of that file, as they stand there, if it is known.
+        columns: the heading of each of our columns that it has, as it stands there.
         assignments: the columns of Canvas' gradebook, by the id of the assignment.
     """
 
@@ -254,11 +254,12 @@ def read_roster(path: Path) -> Roster:
     """
     reader = csv_reader(read_text(path))
     try:
+        given = [str(name).strip() for name in reader.fieldnames or ()]
         headings = headings_of(reader)
         lower = [heading.casefold() for heading in headings]
         if "student" in lower and set(lower) <= set(COLUMNS):
             reader.fieldnames = headings = lower
-        kind, columns = _kind(path, headings)
+        kind, columns = _kind(path, headings, given)
         # A row of blanks is none.
         rows = [
             _cells(path, reader.line_num, row)
@@ -270,9 +271,9 @@ def read_roster(path: Path) -> Roster:
     found = [(person, line) for row, line in rows if (person := kind(path, line, row)) is not None]
     _check_unique(path, found)
     people = tuple(person for person, _ in found)
-    there = {name: heading for name, heading in columns.items() if heading in headings}
+    there = {name: given[headings.index(one)] for name, one in columns.items() if one in headings}
     assignments = _assignments(headings, [row for row, _ in rows]) if kind is _from_canvas else {}
-    return Roster(people, one_line(path.name), tuple(headings), there, assignments)
+    return Roster(people, one_line(path.name), tuple(given), there, assignments)
 
 
 def csv_reader(text: str) -> csv.DictReader[str]:
@@ -307,16 +308,30 @@ def in_english(headings: list[str]) -> list[str]:
     stripped = [name.strip() for name in headings]
     if "student" in stripped:  # a roster of our own
         return stripped
-    spelled = _GERMAN_SPELLED if _GERMAN_SIGN in [name.casefold() for name in stripped] else _SPELLED
-    return [spelled.get(name.casefold(), name) for name in stripped]
+    known = _GERMAN_SPELLED if _in_german(stripped) else _SPELLED
+    return [known.get(name.casefold(), name) for name in stripped]
+
+
+def as_there(name: str, headings: Sequence[str]) -> str:
+    """A heading of Moodle's worksheet in the language of these."""
+    german = (theirs for theirs, ours in _GERMAN.items() if ours == name)
+    return next(german, name) if _in_german(headings) else name
+
+
+def _in_german(headings: Sequence[str]) -> bool:
+    return not _GERMAN_SIGNS.isdisjoint(name.strip().casefold() for name in headings)
 
 
 #: Turns a row into a person, or None if the row is not about a person.
 Kind = Callable[[Path, int, dict[str, str]], "Person | None"]
 
 
-def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
-    """The kind of roster that has these headings, and its headings by our column."""
+def _kind(path: Path, headings: list[str], given: list[str]) -> tuple[Kind, dict[str, str]]:
+    """The kind of roster that has these headings, and its headings by our column.
+
+    Args:
+        given: the headings as they stand there.
+    """
     found = set(headings)
     if {"Identifier", "Full name"} <= found or {"Identifier", "Grade"} <= found:
         return _from_moodle, _MOODLE
@@ -327,7 +342,7 @@ def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
     if not any(headings):
         raise _wrong(path, "its first row is empty")
     if "student" not in found:
-        listed = one_line(", ".join(headings))
+        listed = one_line(", ".join(given))
         why = f"its first row has no heading 'student', and {listed} are not those of a platform's file"
         raise _wrong(path, why)
     if len(found) < len(headings):

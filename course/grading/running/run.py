@@ -77,6 +77,7 @@ class Summary:
         dropped: students of the earlier roster that it does not have.
         unjudged: checks whose own code broke on a submission, a sentence each.
         pass_marks: of the exercises with results: the points that pass, and all points.
+        scores: of the exercises with grades: those that count.
         unsettled: entries that could not be graded and have no score by hand.
         elsewhere: graded submissions without functions that another file has, a sentence each.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
@@ -101,6 +102,7 @@ class Summary:
     unjudged: tuple[str, ...] = ()
     graders: str = ""
     pass_marks: list[tuple[float, float]] = field(default_factory=list)
+    scores: dict[str, list[float]] = field(default_factory=dict)
     unsettled: int = 0
     elsewhere: list[str] = field(default_factory=list)
     edited: list[str] = field(default_factory=list)
@@ -119,6 +121,7 @@ class Summary:
         there = set(results.book.exercise_ids())
         graded = [item for item in results.exercises() if item.id in there]
         self.pass_marks = [(item.pass_share * item.max_points, item.max_points) for item in graded]
+        self.scores = {item.id: [] for item in graded}
         waiting = {effective.student for effective in results.all() if effective.waiting}
         known = (name for name in results.absent() if name not in waiting)
         looked = results.looked or ()
@@ -134,6 +137,8 @@ class Summary:
             settled = effective.override is not None  # a score by hand counts, even without a grading
             self.states["graded" if settled else verdict.state] += 1
             self.passed += effective.passed
+            if effective.score is not None and (settled or verdict.state == "graded"):
+                self.scores.setdefault(effective.exercise, []).append(effective.score)
             self.unsettled += effective.unsettled
             if effective.elsewhere:
                 self.elsewhere.append(f"{effective.student} {effective.exercise}: {effective.elsewhere}")

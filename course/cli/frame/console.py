@@ -318,10 +318,15 @@ class Console:
         if not self.fancy:
             self._fact(f"{label}: " + "".join(bare(p) for p in pieces), indent, hanging=2)
             return
+        from rich.cells import cell_len
         from rich.padding import Padding
         from rich.table import Table
         from rich.text import Text
 
+        if cell_len(label) > self.width // 2:  # beside it, words would break
+            self.line((label, style), indent=indent)
+            self.line(*pieces, indent=indent + 2)
+            return
         grid = Table.grid(padding=(0, 2, 0, 0))
         grid.add_column(no_wrap=True, min_width=width or len(label))
         grid.add_column(overflow="fold")

@@ -1,7 +1,9 @@
 """What an instructor decides after a run: ``override``, ``late``, ``assign`` and ``log``."""
 
 import shlex
-from contextlib import nullcontext
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -39,7 +41,6 @@ from course.printable import command, counted, one_line, quoted, some
 from course.scoring.verdict import format_points, in_points
 
 _SHOWN = 20
-_ZONE = '`zone = "Europe/Berlin"`'
 
 
 def override(
@@ -60,7 +61,7 @@ def override(
         problem = "Give either --score and --reason, or --lift."
         raise UsageError(problem, help="See `course grade override -h`.")
     console = current()
-    with previewed(out) if dry_run else open_results(out, writing=True) as results:
+    with _to_change(out, dry_run=dry_run) as results:
         student = results.called(student)
         if score is None:
             now = overriding.lift(results, student, exercise, reason)
@@ -154,18 +155,18 @@ def late(
         found = [filled(LateOne, one, submitted_at=utc(one.submitted_at) or None) for one in late_ones]
         unknown_time = sum(item.submitted_at is None for item in handed_in) if results.policy else 0
         unknown = unused + _unknown(results, known)
-        unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
-        short = [one_line(item.student) for item in late_ones if results.hangs_on_a_day(item)]
+        zoneless = {(one.student, one.exercise) for one in known if isinstance(listed, Worksheet)}
+        unsure = [
+            one_line(item.student)
+            for item in handed_in
+            if results.hangs_on_the_clock(item, zoneless=(item.student, item.exercise) in zoneless)
+        ]
         extended = _extended(results, known, listed) if isinstance(listed, Worksheet) else []
     if unsure:
         console.warn(
-            f"{times} says no time zone. If the clock changed near the deadline, an hour may cost or spare"
-            f" points of {some(unsure, _SHOWN)}: name the zone in the policy, as in {_ZONE}."
-        )
-    if short:
-        console.warn(
-            f"A day has 24 hours. If the clock changed within one, an hour may cost points of"
-            f" {some(short, _SHOWN)}: with {_ZONE} in the policy, a day ends at the same time of day."
+            f"If the clock changed in these days, an hour may cost or spare points of {some(unsure, _SHOWN)}:"
+            ' with `zone = "Europe/Berlin"`, say, in the policy, a day ends at the same time of day, and a'
+            " worksheet's times are read by that clock."
         )
     if extended:
         console.warn(
@@ -217,13 +218,6 @@ def _times(
     told = [f"one student for the row of {student} in {listed.path}" for student in unused]
     zone = ZoneInfo(results.policy.zone) if results.policy and results.policy.zone else due.tzinfo
     return worksheet_times(listed, students, name, zone), told
-
-
-def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
-    """Whose penalty depends on whether the clock was changed since the deadline."""
-    exercises, listed = {time.exercise for time in known}, {time.student for time in known}
-    mine = (one for one in results.all() if one.student in listed and one.exercise in exercises)
-    return [one_line(item.student) for item in mine if results.hangs_on_the_clock(item)]
 
 
 def _extended(results: Results, known: list[SubmittedAt], sheet: Worksheet) -> list[str]:
@@ -355,66 +349,90 @@ def assign(
         problem = "Give STUDENT and FILE, STUDENT and --lift, --accept-names, or none of them for a list."
         raise UsageError(problem, help="See `course grade assign -h`.")
     console = current()
-    done: list[Assigned] = []
-    lifted: list[Assigned] = []
-    waiting = 0
-    elsewhere: tuple[str, ...] = ()
     if student is not None and lift:
-        with previewed(out) if dry_run else open_results(out, writing=True) as results:
-            lifted = [assigning.lift(results, student, exercise, reason)]
-            left = assigning.unsettled(Results(results.book))
+        told = _taken_back(out, student, exercise, reason, dry_run=dry_run)
     elif student is None and not accept_names:
-        with open_results(out) as results:
-            left, each = assigning.unsettled(results), list(results.all())
-        waiting = len({one.student for one in each if one.waiting})
-        elsewhere = tuple(f"{one.student} {one.exercise}: {one.elsewhere}" for one in each if one.elsewhere)
+        told = _looked_at(out)
     else:
-        level, at_least = opt.levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "a trial" if dry_run else "")
-        grade = partial(batch.grade_all, graders=jobs)
+        level, at_least = opt.levels(isolation)
+        graders = partial(batch.grade_all, graders=jobs)
+        grade = partial(assigning.assign, grade=graders, level=level, at_least=at_least)
 
-        def assigned(accepted: str) -> tuple[list[Assigned], list[Unsettled]]:
-            with previewed(out) if dry_run else open_results(out, writing=True) as results:
+        def graded(accepted: str) -> _Settled:
+            with _to_change(out, dry_run=dry_run) as results:
                 if student is not None and file is not None:
                     wanted = [assigning.named(results, student, file, exercise)]
                 else:
                     wanted = [one for one in assigning.proposals(results) if exercise in {None, one.exercise}]
                 with console.working("Grading"):
-                    done = assigning.assign(
-                        results, load_catalog(), wanted, reason, grade=grade, level=level, at_least=at_least,
-                        accepted=accepted,
-                    )  # fmt: skip
-                return done, assigning.unsettled(results)
+                    done = grade(results, load_catalog(), wanted, reason, accepted=accepted)
+                return _Settled(assigning.unsettled(results), done)
 
-        done, left = opt.agreed(console, assigned, yes=yes)
+        told = opt.agreed(console, graded, yes=yes)
     with open_results(out) as results:
         unowned = results.unowned()
-    broke = unjudged(one for item in done if item.after for one in broken_checks(item.after))
+    broke = unjudged(one for item in told.done if item.after for one in broken_checks(item.after))
     if not console.json:
-        _show_assigned(console, done, lifted, dry_run=dry_run)
-        show_unjudged(console, broke)
-        _show_unsettled(
-            console, left, out, "would be left to settle" if (done or lifted) and dry_run else "to settle"
-        )
-        show_elsewhere(console, elsewhere, out)
-        show_listed(console, unowned, "of unknown owner")
-        if unowned:
-            given = command("grade", "assign", out, "STUDENT", "FILE")
-            console.note(f"{given}, with FILE as a path, says whose it is; a run with --resume looks again.")
-        if waiting:
-            console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
-    ones, back = (tuple(map(_assigned_one, items)) for items in (done, lifted))
+        _show_settled(console, told, out, broke, unowned, dry_run=dry_run)
+    ones, back = (tuple(map(_assigned_one, items)) for items in (told.done, told.lifted))
     return console.answer(
         GradeAssign(
             dry_run=dry_run,
             assigned=ones,
-            unsettled=tuple(map(_unsettled_one, left)),
+            unsettled=tuple(map(_unsettled_one, told.left)),
             unjudged=broke,
-            elsewhere=elsewhere,
+            elsewhere=told.elsewhere,
             lifted=back,
             unrecognised=tuple(unowned),
         )
     )
+
+
+@dataclass(frozen=True)
+class _Settled:
+    """The cases that are left, the files that were assigned or taken back, and what a list tells besides:
+    functions in files that were not graded, and how many students wait."""
+
+    left: list[Unsettled]
+    done: list[Assigned] = field(default_factory=list)
+    lifted: list[Assigned] = field(default_factory=list)
+    elsewhere: tuple[str, ...] = ()
+    waiting: int = 0
+
+
+def _looked_at(out: Path) -> _Settled:
+    with open_results(out) as results:
+        left, each = assigning.unsettled(results), list(results.all())
+    elsewhere = tuple(f"{one.student} {one.exercise}: {one.elsewhere}" for one in each if one.elsewhere)
+    return _Settled(left, elsewhere=elsewhere, waiting=len({one.student for one in each if one.waiting}))
+
+
+def _taken_back(out: Path, student: str, exercise: str | None, reason: str, *, dry_run: bool) -> _Settled:
+    with _to_change(out, dry_run=dry_run) as results:
+        lifted = [assigning.lift(results, student, exercise, reason)]
+        return _Settled(assigning.unsettled(Results(results.book)), lifted=lifted)
+
+
+def _to_change(out: Path, *, dry_run: bool) -> AbstractContextManager[Results]:
+    """The results to change, or a copy of them that is thrown away."""
+    return previewed(out) if dry_run else open_results(out, writing=True)
+
+
+def _show_settled(
+    console: Console, told: _Settled, out: Path, broke: Sequence[str], unowned: list[str], *, dry_run: bool
+) -> None:
+    _show_assigned(console, told.done, told.lifted, dry_run=dry_run)
+    show_unjudged(console, broke)
+    would = (told.done or told.lifted) and dry_run
+    _show_unsettled(console, told.left, out, "would be left to settle" if would else "to settle")
+    show_elsewhere(console, told.elsewhere, out)
+    show_listed(console, unowned, "of unknown owner")
+    if unowned:
+        given = command("grade", "assign", out, "STUDENT", "FILE")
+        console.note(f"{given}, with FILE as a path, says whose it is; a run with --resume looks again.")
+    if told.waiting:
+        console.note(f"Not graded yet: {counted(told.waiting, 'student')}. The run goes on with --resume.")
 
 
 def _unsettled_one(item: Unsettled) -> UnsettledOne:

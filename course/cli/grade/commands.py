@@ -13,7 +13,7 @@ from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, filled
 from course.cli.grade.changing import assign, late, log, override
 from course.cli.grade.options import Exercises, Missing, Out, Share, moved_scores, one_of, show_roster
-from course.cli.grade.running import explain, rerun, run
+from course.cli.grade.running import explain, rerun, run, show_listed
 from course.errors import CourseError, UsageError
 from course.grading.container import write_autograder
 from course.grading.exports.formats import AUTOGRADER, FORMATS
@@ -35,7 +35,7 @@ from course.scoring.verdict import LARGEST_SEED
 
 #: Rows of a list; of what is lost, all but what no terminal keeps.
 _SHOWN, _MOST_LOST = 20, 200
-_LEFT_OUT = "Left out, without a row or an id in the roster"
+_LEFT_OUT = "left out, without a row or an id in the roster"
 
 
 class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=True):
@@ -143,7 +143,7 @@ def _from_gradebook(
             for effective in selection.each():  # with --json, JSON Lines are the answer itself
                 console.emit_line(grade_line(effective, results.course))
             for student in selection.written.unmatched:
-                console.warn(f"{_LEFT_OUT}: {one_line(student)}")
+                console.warn(f"{one_line(student)}: {_LEFT_OUT}")
             return None, found
         written = write(results, name, out, output, options)
         is_new = people is not None and opened.book.meta().get("roster") != found.roster.dump()
@@ -190,19 +190,14 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
         console.emit(filled(GradeExport, written, found, format=name, paths=paths))
         return
     if STDOUT in written.paths:  # what else there is to say must not get into the file
-        for text in (*written.notes, *(f"{_LEFT_OUT}: {one_line(one)}" for one in written.unmatched)):
+        for text in (*written.notes, *(f"{one_line(one)}: {_LEFT_OUT}" for one in written.unmatched)):
             console.warn(text)
         return
     for path in written.paths:
         console.line((f"Wrote {path}.", "bold"))
-    broken = f"Without a score, a fault of the grader; run {command('grade', 'rerun', out)}"
-    for label, listed in ((_LEFT_OUT, written.unmatched), (broken, written.without_grade)):
-        if listed:
-            console.line(f"{label}: {len(listed)}")
-        for entry in listed[:_SHOWN]:
-            console.line(one_line(entry), indent=2)
-        if len(listed) > _SHOWN:
-            console.line(f"and {len(listed) - _SHOWN} more", indent=2)
+    broken = f"without a score, by a fault of the grader; {command('grade', 'rerun', out)} grades these"
+    show_listed(console, written.unmatched, _LEFT_OUT)
+    show_listed(console, written.without_grade, broken)
     for note in written.notes:
         console.note(note)
 

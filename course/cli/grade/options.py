@@ -117,6 +117,16 @@ def agreed(console: Console, attempt: Callable[[str], T], *, yes: bool) -> T:
         return attempt(error.sha256)
 
 
+def show_first(
+    console: Console, rows: Sequence[T], show: Callable[[T], object], most: int = 20, where: str = "."
+) -> None:
+    """Show the first rows, and say how many more there are, and where."""
+    for row in rows[:most]:
+        show(row)
+    if len(rows) > most:
+        console.line(f"and {len(rows) - most} more{where}", indent=2)
+
+
 # ---
 # A change of a student's result, and what was kept about it, as a terminal shows them.
 

@@ -138,10 +138,7 @@ def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out
     console.line((f"The graders were edited after these scores were given: {names}.", "bold"))
     would = f"{len(changes)} would change{':' if changes else '.'}"
     console.line(f"No score was changed by that. With the present graders, {would}")
-    for change in changes[:_MOST_TROUBLED]:
-        opt.show_change(console, change)
-    if len(changes) > _MOST_TROUBLED:
-        console.line(f"and {len(changes) - _MOST_TROUBLED} more.", indent=2)
+    opt.show_first(console, changes, partial(opt.show_change, console))
     show_faults(console, tried, out)
     if changes:
         again = command("grade", "rerun", out)
@@ -347,7 +344,7 @@ def _show_summary(
         rows = [row for row in summary.troubled if row.state == state]
         if rows:
             console.line((f"{len(rows)} {words}:", "bold"))
-        _show_troubled(console, rows, "; results.jsonl has them all")
+        _show_troubled(console, rows, "; results.jsonl has them all.")
     if any(row.code == "check_file" for row in summary.troubled):
         console.note(f"Once the file is right, {command('grade', 'rerun', out)} grades these.")
     if summary.unsettled:
@@ -380,7 +377,7 @@ def _show_scores(console: Console, summary: Summary) -> None:
         console.table(("exercise", "grades", "median", "half of them"), rows)
 
 
-def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = "") -> None:
+def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = ".") -> None:
     files: dict[tuple[str, str], list[Ungraded]] = {}
     told: list[tuple[str, Ungraded]] = []
     for row in rows:
@@ -391,20 +388,20 @@ def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = "") 
     told += [
         (f"{those[0].exercise}, {counted(len(those), 'submission')}", those[0]) for those in files.values()
     ]
-    for whose, row in told[:_MOST_TROUBLED]:
-        console.item(whose, f"{row.code}: {one_line(row.message)}")
-    if len(told) > _MOST_TROUBLED:
-        console.line(f"and {len(told) - _MOST_TROUBLED} more{where}.", indent=2)
+    opt.show_first(
+        console,
+        told,
+        lambda one: console.item(one[0], f"{one[1].code}: {one_line(one[1].message)}"),
+        where=where,
+    )
 
 
 def show_listed(console: Console, listed: Sequence[str], words: str) -> None:
     """How many of something there are, and the first of them; nothing if there are none."""
     if listed:
         console.line((f"{len(listed)} {words}:", "bold"))
-    for entry in listed[:_MOST_TROUBLED]:
-        console.line(one_line(entry), indent=2)
-    if len(listed) > _MOST_TROUBLED:
-        console.line(f"and {len(listed) - _MOST_TROUBLED} more; --json lists them all.", indent=2)
+    where = "; --json lists them all."
+    opt.show_first(console, listed, lambda entry: console.line(one_line(entry), indent=2), where=where)
 
 
 def show_elsewhere(console: Console, listed: Sequence[str], out: Path) -> None:

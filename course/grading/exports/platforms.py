@@ -303,7 +303,7 @@ def _same(theirs: str, ours: str) -> bool:
 def _read(path: Path) -> tuple[list[str], list[list[str]]]:
     rows: list[list[str]] = []
     try:
-        reader = csv.reader(io.StringIO(read_text(path), newline=""), strict=True)
+        reader = csv.reader(io.StringIO(read_text(path, _wrong), newline=""), strict=True)
         headings = next(reader, [])
         missing = [name for name in (_KEY, _GRADE, _MODIFIED) if name not in in_english(headings)]
         if missing:

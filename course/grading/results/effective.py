@@ -400,25 +400,17 @@ class Results:
         granted = person.extension_days or 0.0 if person else 0.0
         return self.policy.due(key.exercise, names, granted) if self.policy else None
 
-    def hangs_on_the_clock(self, one: Effective) -> bool:
-        """Whether a time without a zone decides a penalty: clocks may have changed since the deadline."""
-        return self._hangs(one, self._due(one.result.key), one.submitted_at)
-
-    def hangs_on_a_day(self, one: Effective) -> bool:
-        """Whether an hour decides a penalty, and clocks may have changed in the days that it counts: those of
-        an extension, and those by which it is late."""
-        first, last = (self._due(one.result.key, extended=extended) for extended in (False, True))
-        counts = first != last or (one.late or 0.0) > _ALMOST_A_DAY
-        return counts and self._hangs(one, first, max(last or 0.0, one.submitted_at or 0.0))
-
-    def _hangs(self, one: Effective, first: float | None, last: float | None) -> bool:
-        """Whether an hour decides a penalty, and clocks may have changed between two times."""
-        policy, due, at = self.policy, self._due(one.result.key), one.submitted_at
-        if policy is None or policy.zone or at is None or due is None or first is None or last is None:
+    def hangs_on_the_clock(self, one: Effective, *, zoneless: bool) -> bool:
+        """Whether an hour decides a penalty, and the clock may have been changed by one: in the days of an
+        extension, in those by which it is late, or since the deadline where a time says no zone."""
+        policy, at, key = self.policy, one.submitted_at, one.result.key
+        first, due = (self._due(key, extended=extended) for extended in (False, True))
+        if policy is None or policy.zone or at is None or first is None or due is None:
             return False
         hours = [lateness(at + shift, due) for shift in (-3600.0, 0.0, 3600.0)]
         costs = {policy.penalty(late, one.verdict.score, one.max_score, due) for late in hours}
-        return may_change(first, last) and len(costs) > 1
+        counts = zoneless or first != due or (one.late or 0.0) > _ALMOST_A_DAY
+        return counts and len(costs) > 1 and may_change(first, max(due, at))
 
     def _passes(self, result: Result, score: float | None, most: float) -> bool:
         if score is None:

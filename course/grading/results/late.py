@@ -26,7 +26,6 @@ the policy says so, because copying and unpacking change it.
 from __future__ import annotations
 
 import contextlib
-import csv
 import datetime as dt
 import math
 import re
@@ -42,8 +41,8 @@ import msgspec
 from course.catalog.reading import Document, read_document
 from course.errors import ContentError, MissingCapabilityError, UsageError
 from course.grading.gradebook.records import SubmittedAt
-from course.grading.results.roster import csv_reader, headings_of, moodle_key, spelled
-from course.strangers import decoded, read_bytes, toml
+from course.grading.results.roster import moodle_key, read_table, spelled
+from course.strangers import read_bytes, toml
 
 FORMAT_VERSION = 1
 _DAY_S = 86_400.0
@@ -253,19 +252,9 @@ def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
         UsageError: it cannot be read, is not such a list, or has two times for the same work; the message
             names the line.
     """
-    try:
-        text = decoded(read_bytes(path))
-    except (OSError, UnicodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not text"
-        raise _wrong_times(path, f"it cannot be read ({reason})") from None
-    reader = csv_reader(text)
-    try:
-        headings = set(headings_of(reader))
-        rows = [(reader.line_num, row) for row in reader]
-    except csv.Error as error:
-        raise _wrong_times(path, f"line {reader.line_num + 1}: {error}") from None
+    _, headings, rows = read_table(path, _wrong_times)
     lines: dict[tuple[str, ...], int] = {}
-    if {_IDENTIFIER, _SUBMITTED} <= headings:
+    if {_IDENTIFIER, _SUBMITTED} <= {*headings}:
         times, extended = {}, set[str]()
         for line, row in rows:
             key, words = moodle_key(row[_IDENTIFIER] or ""), (row[_SUBMITTED] or "").strip()
@@ -275,7 +264,7 @@ def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
                 # In any language: of what stands there, an extension alone has a date.
                 extended |= {key} if _YEAR.search(row.get("Status") or "") else set()
         return Worksheet(path, times, frozenset(extended))
-    if not headings >= _COLUMNS:
+    if not {*headings} >= _COLUMNS:
         raise _wrong_times(path, "its first row lacks student, exercise or submitted_at")
     found = []
     for line, row in rows:

@@ -252,22 +252,14 @@ def read_roster(path: Path) -> Roster:
     Raises:
         UsageError: it cannot be read or is not a roster; the message names the row.
     """
-    reader = csv_reader(read_text(path))
-    try:
-        given = [str(name).strip() for name in reader.fieldnames or ()]
-        headings = headings_of(reader)
-        lower = [heading.casefold() for heading in headings]
-        if "student" in lower and set(lower) <= set(COLUMNS):
-            reader.fieldnames = headings = lower
-        kind, columns = _kind(path, headings, given)
-        # A row of blanks is none.
-        rows = [
-            _cells(path, reader.line_num, row)
-            for row in reader
-            if any(cell.strip() if isinstance(cell, str) else cell for cell in row.values())
-        ]
-    except csv.Error as error:
-        raise _wrong(path, f"line {reader.line_num + 1}: {error}") from None
+    given, headings, table = read_table(path, _wrong)
+    kind, columns = _kind(path, headings, given)
+    # A row of blanks is none.
+    rows = [
+        _cells(path, line, row)
+        for line, row in table
+        if any(cell.strip() if isinstance(cell, str) else cell for cell in row.values())
+    ]
     found = [(person, line) for row, line in rows if (person := kind(path, line, row)) is not None]
     _check_unique(path, found)
     people = tuple(person for person, _ in found)
@@ -276,37 +268,45 @@ def read_roster(path: Path) -> Roster:
     return Roster(people, one_line(path.name), tuple(given), there, assignments)
 
 
-def csv_reader(text: str) -> csv.DictReader[str]:
-    """A reader of rows whose cells commas, semicolons or tabs part, as whoever exports has it.
+def read_table(
+    path: Path, wrong: Callable[[Path, str], UsageError]
+) -> tuple[list[str], list[str], list[tuple[int, dict[str, str | None]]]]:
+    """The headings as they stand there and in English, and the rows by the latter, each with its line.
 
-    Where it raises csv.Error, the row that begins on the line after ``line_num`` is wrong.
+    Commas, semicolons or tabs part the cells, as whoever exports has it.
+
+    Args:
+        wrong: makes the error that is raised, from why the file is none that can be read.
     """
+    text = read_text(path, wrong)
     first = text.partition("\n")[0]
     delimiter = max(",;\t", key=first.count)
-    return csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    try:
+        given = [str(name).strip() for name in reader.fieldnames or ()]
+        reader.fieldnames = headings = in_english(given)
+        return given, headings, [(reader.line_num, row) for row in reader]
+    except csv.Error as error:
+        raise wrong(path, f"line {reader.line_num + 1}: {error}") from None
 
 
-def headings_of(reader: csv.DictReader[str]) -> list[str]:
-    """The headings, in English, by which the rows are known from here on."""
-    headings = in_english([str(name) for name in reader.fieldnames or ()])
-    reader.fieldnames = headings
-    return headings
-
-
-def read_text(path: Path) -> str:
+def read_text(path: Path, wrong: Callable[[Path, str], UsageError]) -> str:
     try:
         return decoded(read_bytes(path))
     except OSError as error:
-        raise _wrong(path, f"it cannot be read ({error.strerror})") from None
+        raise wrong(path, f"it cannot be read ({error.strerror})") from None
     except UnicodeError:
-        raise _wrong(path, "it is not text; save it as 'CSV UTF-8'") from None
+        raise wrong(path, "it is not text; save it as 'CSV UTF-8'") from None
 
 
 def in_english(headings: list[str]) -> list[str]:
     """A platform's headings as they are here, whatever their letter case, and Moodle's worksheet in
     English; others unchanged."""
     stripped = [name.strip() for name in headings]
-    if "student" in stripped:  # a roster of our own
+    lower = [name.casefold() for name in stripped]
+    if "student" in lower and set(lower) <= set(COLUMNS):  # a roster of our own
+        return lower
+    if "student" in stripped:  # a list of our own
         return stripped
     known = _GERMAN_SPELLED if _in_german(stripped) else _SPELLED
     return [known.get(name.casefold(), name) for name in stripped]

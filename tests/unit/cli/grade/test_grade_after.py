@@ -169,7 +169,7 @@ def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out):
 def test_an_export_says_what_it_wrote_and_who_was_left_out(course, out):
     words = "grade export out --format canvas --roster roster.csv --exercise doubling"
     course(*words.split(), "--assignment", "doubling=77", "--partial", "-o", "c.csv").ends(
-        0, "Wrote c.csv.", "Left out, without a row or an id in the roster: 2\n  cy\n  dan\n"
+        0, "Wrote c.csv.", "2 left out, without a row or an id in the roster:\n  cy\n  dan\n"
     )
     assert (out.parent / "c.csv").read_text("utf-8-sig").splitlines()[2] == '"Ada L","11","","","","10"'
     # The roster is remembered: the next export needs no other.

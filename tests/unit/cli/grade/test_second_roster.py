@@ -477,7 +477,7 @@ def test_an_hour_of_summer_time_that_costs_points_of_an_extension_is_named(cours
     with make_book(tmp_path / "out", {"Ada_101": RIGHT}):
         pass
     named = []
-    for due, days in (("2026-10-24", 1), ("2026-10-24", 1.042), ("2026-10-27", 1), ("2026-10-25", 0)):
+    for due, days in (("2026-10-24", 1), ("2026-10-27", 1), ("2026-10-25", 0)):
         write(
             tmp_path,
             "late.toml",
@@ -488,7 +488,7 @@ def test_an_hour_of_summer_time_that_costs_points_of_an_extension_is_named(cours
         write(tmp_path, "times.csv", f"student,exercise,submitted_at\nAda_101,doubling,{at.isoformat()}\n")
         ran = course("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv")
         named.append("points of Ada_101: with `zone =" in " ".join(ran.err.split()))
-    assert named == [True, False, False, False]
+    assert named == [True, False, False]
 
 
 def test_a_german_worksheet_is_told_of_by_its_own_headings(course, tmp_path):
@@ -532,7 +532,7 @@ def test_with_a_zone_a_day_ends_at_the_same_time_of_day(course, tmp_path, day, d
         )
         told = course("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv", "--json")
         assert sum(one["penalty"] for one in told.json["late"]) == cost
-        assert ("A day has 24 hours." in told.err) == bool(told.json["late"] and cost != costs[0])
+        assert ("If the clock changed" in told.err) == (cost != costs[0])
 
 
 def test_a_zone_that_is_not_known_is_refused_by_its_line(course, tmp_path):

@@ -22,10 +22,10 @@ import msgspec
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import NotFoundError
+from course.grading.intake.archives import readable
 from course.grading.pipes import Servant, limit_cpu, limit_memory, read_frame, write_frame
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.results.effective import Results
-from course.isolation.inside import statements
 
 Passage = tuple[int, int]
 
@@ -75,8 +75,8 @@ class Prints(msgspec.Struct, frozen=True):
 
 
 def fingerprints(source: bytes) -> Prints | None:
-    """The fingerprints of a source; None if it is not Python."""
-    tree = statements.tree(source)
+    """The fingerprints of a source; None if nothing in it is Python."""
+    tree = readable(source)
     if tree is None:
         return None
     marks: dict[int, set[tuple[int, int]]] = {}

@@ -146,7 +146,7 @@ def late(
                 joined = merged(Results(book), people, lasting=True)
                 book.set_meta(roster=joined.roster.dump())
                 dropped = joined.dropped
-            known, unused = _times(Results(book), listed, exercise)
+            known, unused, given_more = _times(Results(book), listed, exercise)
             if known:
                 book.add_times(known, replace=True)
         results = Results(book)
@@ -156,12 +156,13 @@ def late(
         unknown_time = sum(item.submitted_at is None for item in handed_in) if results.policy else 0
         unknown = unused + _unknown(results, known)
         zoneless = {(one.student, one.exercise) for one in known if isinstance(listed, Worksheet)}
-        unsure = [
-            one_line(item.student)
-            for item in handed_in
-            if results.hangs_on_the_clock(item, zoneless=(item.student, item.exercise) in zoneless)
-        ]
-        extended = _extended(results, known, listed) if isinstance(listed, Worksheet) else []
+        hanging = (
+            one
+            for one in handed_in
+            if results.hangs_on_the_clock(one, zoneless=(one.student, one.exercise) in zoneless)
+        )
+        unsure = [one_line(one.student) for one in hanging]
+        extended = [one_line(one.student) for one in found if (one.student, one.exercise) in given_more]
     if unsure:
         console.warn(
             f"If the clock changed in these days, an hour may cost or spare points of {some(unsure, _SHOWN)}:"
@@ -196,11 +197,15 @@ def late(
 
 def _times(
     results: Results, listed: list[SubmittedAt] | Worksheet, exercise: str | None
-) -> tuple[list[SubmittedAt], list[str]]:
-    """The times in a list; those of a worksheet need an exercise and its deadline, and some of its rows may
-    fit no student."""
+) -> tuple[list[SubmittedAt], list[str], set[tuple[str, str]]]:
+    """The times in a list. Those of a worksheet need an exercise and its deadline; some rows may fit no
+    student, and some students have more time by it."""
     if not isinstance(listed, Worksheet):
-        return [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed], []
+        return (
+            [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed],
+            [],
+            set(),
+        )
     ids = [item.id for item in results.exercises() if item.id != "quiz"]
     name = exercise or (ids[0] if len(ids) == 1 else "")
     if name not in ids:
@@ -217,17 +222,8 @@ def _times(
     unused = [one.student for one in people.people if one.moodle_key in listed.times.keys() - students.keys()]
     told = [f"one student for the row of {student} in {listed.path}" for student in unused]
     zone = ZoneInfo(results.policy.zone) if results.policy and results.policy.zone else due.tzinfo
-    return worksheet_times(listed, students, name, zone), told
-
-
-def _extended(results: Results, known: list[SubmittedAt], sheet: Worksheet) -> list[str]:
-    """Who is late, and has more time by a worksheet."""
-    people = read_roster(sheet.path)
-    found = people.match((time.student for time in known), results.downloads)[0]
-    exercises = {time.exercise for time in known}
-    mine = {student for student, person in found.items() if person.moodle_key in sheet.extended}
-    late_ones = (one for one in results.all() if one.late is not None and one.exercise in exercises)
-    return [one_line(one.student) for one in late_ones if one.student in mine]
+    given_more = {(students[key], name) for key in listed.extended & students.keys()}
+    return worksheet_times(listed, students, name, zone), told, given_more
 
 
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:

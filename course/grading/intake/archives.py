@@ -609,7 +609,7 @@ def _defined(
     written: dict[str, bool] = {}  # the last one of a name counts
     code = hashlib.sha256()
     for piece in pieces:
-        found = statements.tree(piece)
+        found = readable(piece)
         raw = piece if isinstance(piece, bytes) else piece.encode("utf-8", "surrogatepass")
         lines = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
         done = 0  # a line may hold thousands of statements
@@ -623,6 +623,15 @@ def _defined(
                 done = node.end_lineno or done
     defined = tuple(function for function in functions if function in written)
     return defined, tuple(function for function in defined if written[function]), code.hexdigest(), size
+
+
+def readable(source: str | bytes) -> ast.Module | None:
+    """The syntax tree of those statements that are Python, as graders read a module; None if none is."""
+    if (whole := statements.tree(source)) is not None:
+        return whole
+    text = source if isinstance(source, str) else source.decode("utf-8", "replace")
+    body = [node for piece in statements.pieces(text) for node in piece.body]
+    return ast.Module(body, []) if body else None
 
 
 #: Statements that make up a file's code; imports and tries may differ between a notebook and its module.

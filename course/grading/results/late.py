@@ -1,22 +1,6 @@
 """The cost of lateness: a policy as data, applied when scores are read and never written into them.
 
-    format_version = 1
-    grace_minutes = 15               # late by no more costs nothing
-    percent_per_day = 10             # of the exercise's maximum, for each day begun; or points_per_day
-    of = "maximum"                   # or "score": percent of what was reached
-    at_most_percent = 50             # no penalty is larger
-    closed_after_days = 7            # later than this scores nothing
-    trust = ["list", "gradescope"]   # whose times count, the most trusted first; "mtime" if you say so
-    zone = "Europe/Berlin"           # a day ends at the same time of its clock; without it, after 24 hours
-
-    [[deadline]]
-    exercise = "integrators"         # "*" for every exercise without one of its own
-    due = 2026-12-01T23:59:00+01:00
-
-    [[extension]]
-    student = "ada"
-    exercise = "*"
-    days = 2
+docs/instructor.md shows one whole.
 
 Which time counts: a student's clock is never trusted, so no time inside a submission is read. The
 instructor's own list and a learning platform's download are trusted; the time of a file is trusted only where

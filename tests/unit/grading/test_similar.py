@@ -158,6 +158,11 @@ def test_copies_of_a_student_or_of_what_the_course_itself_has_are_found_and_noth
     assert not ran.exists(), "a source is never run"
 
 
+def test_a_line_that_is_no_python_hides_no_copy():
+    whole, broken = (fingerprints(f"{ORIGINAL}{more}".encode()) for more in ("", "\nthis is no python (\n"))
+    assert broken.marks.keys() >= whole.marks.keys()
+
+
 def test_sources_that_hurt_the_parser_or_are_too_long_are_named_and_the_rest_compared(found):
     assert {f"{name} doubling" for name in ("syntax", "nul", "parentheses", "long")} <= set(found.unreadable)
     assert set(found.unreadable) <= {f"{name} doubling" for name in BAD}

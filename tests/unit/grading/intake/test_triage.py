@@ -143,6 +143,9 @@ ASKED = {
     "the better of two": ({"a.py": SOURCE, "b.py": b"def double(x): return x\n"}, "no_file", "a.py"),
     "copies of one": ({"a.py": SOURCE, "b.py": SOURCE}, "no_file", "a.py"),
     "a slip in the name": ({"dubling.py": b"def double(:\n"}, "no_file", "dubling.py"),
+    "beside a line that is no Python": (
+        {"notes.py": SOURCE + b"\nthis is no python (\n", "dubling.py": b"x = 1\n"}, "no_file", "notes.py"
+    ),
     "the one that is written": ({"doubling_1.py": HALF, "my_own.py": SOURCE}, "no_file", "my_own.py"),
     "a stub of another name": ({"doubling_1.py": STUB, "my_own.py": SOURCE}, "no_file", "my_own.py"),
     "two finished ones": ({"doubling_v1.py": SOURCE, "doubling_final.py": OTHER}, "no_file", None),

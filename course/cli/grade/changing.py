@@ -1,9 +1,7 @@
 """What an instructor decides after a run: ``override``, ``late``, ``assign`` and ``log``."""
 
 import shlex
-from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -345,69 +343,51 @@ def assign(
         problem = "Give STUDENT and FILE, STUDENT and --lift, --accept-names, or none of them for a list."
         raise UsageError(problem, help="See `course grade assign -h`.")
     console = current()
-    if student is not None and lift:
-        told = _taken_back(out, student, exercise, reason, dry_run=dry_run)
-    elif student is None and not accept_names:
-        told = _looked_at(out)
+    done: list[Assigned] = []
+    lifted: list[Assigned] = []
+    listing = student is None and not accept_names
+    if listing:
+        with open_results(out) as results:
+            left = assigning.unsettled(results)
+    elif student is not None and lift:
+        with _to_change(out, dry_run=dry_run) as results:
+            lifted = [assigning.lift(results, student, exercise, reason)]
+            left = assigning.unsettled(Results(results.book))
     else:
         reason = reason or ("the match that was proposed" if accept_names else "a trial" if dry_run else "")
         level, at_least = opt.levels(isolation)
         graders = partial(batch.grade_all, graders=jobs)
         grade = partial(assigning.assign, grade=graders, level=level, at_least=at_least)
 
-        def graded(accepted: str) -> _Settled:
+        def graded(accepted: str) -> tuple[list[Assigned], list[Unsettled]]:
             with _to_change(out, dry_run=dry_run) as results:
                 if student is not None and file is not None:
                     wanted = [assigning.named(results, student, file, exercise)]
                 else:
                     wanted = [one for one in assigning.proposals(results) if exercise in {None, one.exercise}]
                 with console.working("Grading"):
-                    done = grade(results, load_catalog(), wanted, reason, accepted=accepted)
-                return _Settled(assigning.unsettled(results), done)
+                    made = grade(results, load_catalog(), wanted, reason, accepted=accepted)
+                return made, assigning.unsettled(results)
 
-        told = opt.agreed(console, graded, yes=yes)
+        done, left = opt.agreed(console, graded, yes=yes)
     with open_results(out) as results:
-        unowned = results.unowned()
-    broke = unjudged(one for item in told.done if item.after for one in broken_checks(item.after))
-    if not console.json:
-        _show_settled(console, told, out, broke, unowned, dry_run=dry_run)
-    ones, back = (tuple(map(_assigned_one, items)) for items in (told.done, told.lifted))
-    return console.answer(
-        GradeAssign(
-            dry_run=dry_run,
-            assigned=ones,
-            unsettled=tuple(map(_unsettled_one, told.left)),
-            unjudged=broke,
-            elsewhere=told.elsewhere,
-            lifted=back,
-            unrecognised=tuple(unowned),
-        )
+        unowned, each = results.unowned(), list(results.all()) if listing else []
+    reply = GradeAssign(
+        dry_run=dry_run,
+        assigned=tuple(map(_assigned_one, done)),
+        unsettled=tuple(map(_unsettled_one, left)),
+        unjudged=unjudged(one for item in done if item.after for one in broken_checks(item.after)),
+        elsewhere=tuple(f"{one.student} {one.exercise}: {one.elsewhere}" for one in each if one.elsewhere),
+        lifted=tuple(map(_assigned_one, lifted)),
+        unrecognised=tuple(unowned),
     )
-
-
-@dataclass(frozen=True)
-class _Settled:
-    """The cases that are left, the files that were assigned or taken back, and what a list tells besides:
-    functions in files that were not graded, and how many students wait."""
-
-    left: list[Unsettled]
-    done: list[Assigned] = field(default_factory=list)
-    lifted: list[Assigned] = field(default_factory=list)
-    elsewhere: tuple[str, ...] = ()
-    waiting: int = 0
-
-
-def _looked_at(out: Path) -> _Settled:
-    with open_results(out) as results:
-        left, each = assigning.unsettled(results), list(results.all())
-    elsewhere = tuple(f"{one.student} {one.exercise}: {one.elsewhere}" for one in each if one.elsewhere)
-    return _Settled(left, elsewhere=elsewhere, waiting=len({one.student for one in each if one.waiting}))
-
-
-def _taken_back(out: Path, student: str, exercise: str | None, reason: str, *, dry_run: bool) -> _Settled:
-    with _to_change(out, dry_run=dry_run) as results:
-        lifted = [assigning.lift(results, student, exercise, reason)]
-        return _Settled(assigning.unsettled(Results(results.book)), lifted=lifted)
+    if not console.json:
+        _show_assigned(console, done, lifted, dry_run=dry_run)
+        show_unjudged(console, reply.unjudged)
+        would = "would be left to settle" if (done or lifted) and dry_run else "to settle"
+        _show_unsettled(console, left, out, would)
+        _show_besides(console, reply, len({one.student for one in each if one.waiting}), out)
+    return console.answer(reply)
 
 
 def _to_change(out: Path, *, dry_run: bool) -> AbstractContextManager[Results]:
@@ -415,20 +395,15 @@ def _to_change(out: Path, *, dry_run: bool) -> AbstractContextManager[Results]:
     return previewed(out) if dry_run else open_results(out, writing=True)
 
 
-def _show_settled(
-    console: Console, told: _Settled, out: Path, broke: Sequence[str], unowned: list[str], *, dry_run: bool
-) -> None:
-    _show_assigned(console, told.done, told.lifted, dry_run=dry_run)
-    show_unjudged(console, broke)
-    would = (told.done or told.lifted) and dry_run
-    _show_unsettled(console, told.left, out, "would be left to settle" if would else "to settle")
-    show_elsewhere(console, told.elsewhere, out)
-    show_listed(console, unowned, "of unknown owner")
-    if unowned:
+def _show_besides(console: Console, reply: GradeAssign, waiting: int, out: Path) -> None:
+    """What else may want an instructor: work in other files, nobody's work, and students who wait."""
+    show_elsewhere(console, reply.elsewhere, out)
+    show_listed(console, reply.unrecognised, "of unknown owner")
+    if reply.unrecognised:
         given = command("grade", "assign", out, "STUDENT", "FILE")
         console.note(f"{given}, with FILE as a path, says whose it is; a run with --resume looks again.")
-    if told.waiting:
-        console.note(f"Not graded yet: {counted(told.waiting, 'student')}. The run goes on with --resume.")
+    if waiting:
+        console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
 
 
 def _unsettled_one(item: Unsettled) -> UnsettledOne:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -26,16 +27,13 @@ Writer = Callable[[Path, Results, ExportOptions], Written]
 AUTOGRADER = "gradescope-autograder"
 
 
-def _csv(path: Path, results: Results, options: ExportOptions) -> Written:
+def _plain(path: Path, results: Results, options: ExportOptions, *, lines: bool) -> Written:
+    """Our own table, or the lines of JSON."""
     selection = select(results, options)
-    write_csv(path, results, selection.each())
-    selection.written.paths.append(path)
-    return selection.written
-
-
-def _jsonl(path: Path, results: Results, options: ExportOptions) -> Written:
-    selection = select(results, options)
-    write_jsonl(path, selection.each(), results.course)
+    if lines:
+        write_jsonl(path, selection.each(), results.course)
+    else:
+        write_csv(path, results, selection.each())
     selection.written.paths.append(path)
     return selection.written
 
@@ -141,8 +139,8 @@ def _html(target: Path, results: Results, options: ExportOptions) -> Written:
 
 #: name -> the name of its file in OUT, and the function that writes it.
 FORMATS: dict[str, tuple[str, Writer]] = {
-    "csv": ("grades.csv", _csv),
-    "jsonl": ("results.jsonl", _jsonl),
+    "csv": ("grades.csv", partial(_plain, lines=False)),
+    "jsonl": ("results.jsonl", partial(_plain, lines=True)),
     "junit": ("junit.xml", write_junit),
     "gradescope": ("gradescope", write_gradescope),
     "canvas": ("canvas.csv", write_canvas),

@@ -211,12 +211,8 @@ def _table(selection: Selection, scales: Mapping[str, float] | None = None) -> d
 # ---
 # Moodle's grading worksheet, filled in with grades and feedback.
 #
-# A teacher downloads it ("Download grading worksheet"), and uploads it again ("Upload grading worksheet").
-# Moodle finds a row by "Identifier", takes "Grade" and "Feedback comments" from it, refuses a file
-# without "Last modified (grade)", leaves out a grade that is empty, out of range or locked, and one that
-# was changed in Moodle after the time in that column. An empty feedback cell deletes existing feedback. So
-# everything but those two cells is written unchanged, and so is the whole row where we have no grade. A row
-# that has a grade or feedback already, other than ours, is a teacher's: it is kept, and listed.
+# docs/instructor.md says what Moodle takes of it. So everything but two cells of a row is written unchanged,
+# and so is the whole row where we have no grade, or where a teacher has put another.
 #
 # Source: Moodle's own reader, https://github.com/moodle/moodle/tree/main/mod/assign/feedback/offline
 

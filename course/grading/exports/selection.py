@@ -9,7 +9,7 @@ import msgspec
 
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.results.effective import Effective, Results, no_exercise
-from course.grading.results.roster import FOR_TESTS, Column, Person, Roster
+from course.grading.results.roster import FOR_TESTS, Column, Person
 from course.printable import command, one_line, some
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, for_student
 
@@ -140,7 +140,8 @@ def select(
     key = " or ".join(needs.columns) if needs else ""
     if results.roster is not None:
         # A roster in which nobody has the platform's key: a list of all students would hide that.
-        if needs is not None and not _has_any(results.roster, needs):
+        rows = results.roster.people
+        if needs and not any(getattr(person, name) for person in rows for name in needs.columns):
             message = f"{results.roster.called} {needs.absent()}. Nothing was written."
             raise MissingCapabilityError(message, help=needs.give, code="unmatched_students")
         people, unmatched = results.roster.match(results.students(), results.downloads)
@@ -241,10 +242,6 @@ def is_part(results: Results, options: ExportOptions) -> bool:
     if options.exercises and {exercise.id for exercise in results.exercises()} - set(options.exercises):
         return True
     return options.partial and bool(results.unmatched(results.students()))
-
-
-def _has_any(roster: Roster, needs: Needs) -> bool:
-    return any(getattr(person, name) for person in roster.people for name in needs.columns)
 
 
 def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapabilityError:

@@ -316,17 +316,14 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
         else:
             shared.setdefault(student, []).append((match["file"], folder / raw))
     for student, identity in people.items():
-        if student in owned and student in shared:
-            both = (
-                (_text(owned[student].name), Place(owned[student])),
-                ("files", Place(folder, tuple(shared[student]))),
-            )
-            told = f"{quoted(student)} has both a folder and files of their own"
-            found.students.append(Student(student, both[0][1], identity, several=both, unclear=told))
-            continue
-        place = Place(owned[student]) if student in owned else Place(folder, tuple(shared.get(student, ())))
+        places = [(_text(owned[student].name), Place(owned[student]))] if student in owned else []
+        if student in shared or not places:
+            places.append(("files", Place(folder, tuple(shared.get(student, ())))))
+        several = tuple(places) if len(places) > 1 else ()
+        told = f"{quoted(student)} has both a folder and files of their own" if several else ""
         words = tuple(typed.get(student, ()))
-        found.students.append(Student(student, place, identity, typed=words))
+        one = Student(student, places[0][1], identity, typed=words, several=several, unclear=told)
+        found.students.append(one)
     return found
 
 

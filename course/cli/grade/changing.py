@@ -26,7 +26,6 @@ from course.grading.results.late import (
     read_policy,
     read_times,
     unknown_names,
-    worksheet_times,
 )
 from course.grading.results.merge import merged
 from course.grading.results.roster import read_roster
@@ -221,7 +220,9 @@ def _times(
     told = [f"one student for the row of {student} in {listed.path}" for student in unused]
     zone = ZoneInfo(results.policy.zone) if results.policy and results.policy.zone else due.tzinfo
     given_more = {(students[key], name) for key in listed.extended & students.keys()}
-    return worksheet_times(listed, students, name, zone), told, given_more
+    there = listed.times.keys() & students.keys()
+    known = [SubmittedAt(students[key], name, "", "list", listed.at(key, zone)) for key in sorted(there)]
+    return known, told, given_more
 
 
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:

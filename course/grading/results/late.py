@@ -228,6 +228,14 @@ class Worksheet:
     times: dict[str, str]
     extended: frozenset[str]
 
+    def at(self, key: str, zone: dt.tzinfo) -> float:
+        """When a participant handed in, in seconds since 1970, by the clock of a zone: Moodle writes none.
+
+        Raises:
+            UsageError: the time cannot be read.
+        """
+        return _in_words(self.path, self.times[key]).replace(tzinfo=zone).timestamp()
+
 
 def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
     """Read such a list, or a worksheet of Moodle's.
@@ -265,26 +273,6 @@ def _once(path: Path, lines: dict[tuple[str, ...], int], line: int, *work: str) 
     if (first := lines.setdefault(work, line)) != line:
         named = " ".join(map(repr, work))
         raise _wrong_times(path, f"{named} is in two rows, on lines {first} and {line}")
-
-
-def worksheet_times(
-    sheet: Worksheet, students: Mapping[str, str], exercise: str, zone: dt.tzinfo
-) -> list[SubmittedAt]:
-    """The times of a worksheet.
-
-    Args:
-        students: participant's number -> student.
-        zone: that of the deadline: Moodle writes none.
-
-    Raises:
-        UsageError: a time cannot be read.
-    """
-    found = []
-    for key, words in sheet.times.items():
-        if key in students:
-            at = _in_words(sheet.path, words).replace(tzinfo=zone).timestamp()
-            found.append(SubmittedAt(students[key], exercise, "", "list", at))
-    return found
 
 
 def _in_words(path: Path, words: str) -> dt.datetime:

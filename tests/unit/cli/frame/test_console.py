@@ -202,3 +202,12 @@ def test_a_window_that_becomes_narrower_is_seen(monkeypatch):
     rows = [len(row.rstrip()) for row in out.getvalue().splitlines()]
     assert max(rows[:2]) > 70
     assert max(rows[2:]) <= 40
+
+
+def test_a_label_that_leaves_no_room_has_its_text_below_it(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "40")
+    console, out, _ = _console(environ={"NO_COLOR": "1"})
+    console.item("Anna-Lena Schmidt collisions", "nothing was handed in", style="bold")
+    assert [line.strip() for line in re.sub(r"\x1b\[[0-9;]*m", "", out.getvalue()).splitlines()] == [
+        "Anna-Lena Schmidt collisions", "nothing was handed in",
+    ]  # fmt: skip

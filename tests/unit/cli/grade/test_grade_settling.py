@@ -435,6 +435,18 @@ def test_a_file_assigned_to_the_wrong_student_is_taken_back(course, here):
         assert course("grade", "assign", "out", *words).code == 2
 
 
+def test_a_run_says_how_the_class_did_in_each_exercise(course, here):
+    run = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+    assert "median" not in course(*run).out, "one grade has no middle"
+    for student in ("dan", "eve"):
+        shutil.copytree(here / "class" / "ada", here / "class" / student)
+    course(*run)
+    course("grade", "override", "out", "ada", "doubling", "--score", "4", "--reason", "oral")
+    told = "exercise: doubling; grades: 3; median: 10; half of them: 7 to 10"
+    assert told in course(*run).out
+    assert "median" not in course(*run, "--quiet").out
+
+
 def test_a_name_means_the_file_in_the_folder_that_was_graded_last(course, here):
     shutil.copytree(here / "class", here / "second")
     (here / "second" / "ada" / "better.py").write_text(SOURCE.replace("return x", "return [x]"))

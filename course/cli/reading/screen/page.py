@@ -220,9 +220,9 @@ class Page(Widget):
             pictures.drawn = lambda name: self.from_thread(self._take_picture, name)
 
     def from_thread(self, act: Callable[..., object], *arguments: object) -> None:
-        """Do something here that another thread asks for."""
+        """Do something here that another thread asks for; it never waits, as who leaves may wait for it."""
         with contextlib.suppress(RuntimeError):  # the reader is gone
-            self.reader.call_from_thread(act, *arguments)
+            self.reader.call_later(act, *arguments)
 
     # -- the record --------------------------------------------------------------------------------------
 

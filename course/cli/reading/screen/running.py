@@ -213,7 +213,6 @@ class Practice:
         self._opened: dict[str, bytes] = {}
         self._thread: threading.Thread | None = None
         self._process: subprocess.Popen[bytes] | None = None
-        self._closed = False
 
     @property
     def possible(self) -> bool:
@@ -300,7 +299,6 @@ class Practice:
         return True
 
     def close(self) -> None:
-        self._closed = True
         if self._process is not None:
             self._process.kill()
         if self._thread is not None:
@@ -321,8 +319,7 @@ class Practice:
                     fixed = tuple(sorted(history.changed_tasks()[0]))
             now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")), fixed=fixed)
         self._standings[name] = now
-        if not self._closed:
-            self.changed(name)
+        self.changed(name)
 
     def _reply(self, name: str, command: str) -> dict[str, Any]:
         assert self._workspace is not None

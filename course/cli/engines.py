@@ -60,6 +60,7 @@ class EngineRow(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     engine: str
+    version: str
     scenario: str
     setting: str
     dt: float
@@ -69,15 +70,14 @@ class EngineRow(msgspec.Struct, frozen=True, kw_only=True):
     error: float | None
     unit: str
     best: bool
-    message: str
     origin: str
     measured: str
-    version: str
+    repeats: int
+    spread: float
+    message: str
     options: dict[str, Any]
     why: tuple[str, ...]
     samples: tuple[float, ...]
-    repeats: int
-    spread: float
     details: dict[str, Any]
 
 
@@ -99,24 +99,10 @@ class Engines(Envelope, tag="course.engines/1", frozen=True, kw_only=True):
 # The files that ``course engines compare`` writes, and its rows as data.
 
 
-_COLUMNS = (
-    "engine",
-    "version",
-    "scenario",
-    "setting",
-    "dt",
-    "status",
-    "value",
-    "truth",
-    "error",
-    "unit",
-    "best",
-    "origin",
-    "measured",
-    "repeats",
-    "spread",
-    "message",
-)
+#: Of the table: what is a single value.
+_COLUMNS = [
+    name for name in EngineRow.__struct_fields__ if name not in {"options", "why", "samples", "details"}
+]
 
 
 app = group(COMMANDS["engines"].summary)

@@ -356,14 +356,13 @@ def _asked(console: Console, rubric: Rubric) -> tuple[str, ...]:
     """A grade for each point; none if the input ends before."""
     found: list[str] = []
     for number, point in enumerate(rubric.points, 1):
-        while True:
+        meant: list[str] = []
+        while not meant:
             said = console.ask(f"{number}. {point} [yes/partly/no] ")
             if said is None:
                 return ()
             meant = [grade for grade in GRADES if said and grade.startswith(said.lower())]
-            if meant:
-                found += meant
-                break
+        found += meant
     return tuple(found)
 
 

@@ -60,6 +60,7 @@ class EngineRow(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     engine: str
+    version: str
     scenario: str
     setting: str
     dt: float
@@ -69,15 +70,14 @@ class EngineRow(msgspec.Struct, frozen=True, kw_only=True):
     error: float | None
     unit: str
     best: bool
-    message: str
     origin: str
     measured: str
-    version: str
+    repeats: int
+    spread: float
+    message: str
     options: dict[str, Any]
     why: tuple[str, ...]
     samples: tuple[float, ...]
-    repeats: int
-    spread: float
     details: dict[str, Any]
 
 
@@ -99,24 +99,10 @@ class Engines(Envelope, tag="course.engines/1", frozen=True, kw_only=True):
 # The files that ``course engines compare`` writes, and its rows as data.
 
 
-_COLUMNS = (
-    "engine",
-    "version",
-    "scenario",
-    "setting",
-    "dt",
-    "status",
-    "value",
-    "truth",
-    "error",
-    "unit",
-    "best",
-    "origin",
-    "measured",
-    "repeats",
-    "spread",
-    "message",
-)
+#: Of the table: what is a single value.
+_COLUMNS = [
+    name for name in EngineRow.__struct_fields__ if name not in {"options", "why", "samples", "details"}
+]
 
 
 app = group(COMMANDS["engines"].summary)
@@ -246,7 +232,7 @@ def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
 
 
 # ---
-# A comparison on the screen: one table for each scenario, the truth in its first column.
+# A comparison on the screen: one table for each scenario, the truth above it.
 
 
 _STATUS = {
@@ -305,7 +291,7 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
     if not console.quiet:
         console.heading(scenario.title, scenario.id)
         console.line((scenario.question, "dim"))
-        console.line(f"Measured: {scenario.quantity}.")
+        console.line(f"Measured: {scenario.quantity}.{_truth(scenario)}")
     steps = sorted({row.dt for row in rows}, reverse=True)
     lines = []
     for dt in steps:
@@ -320,8 +306,8 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
                 continue  # what has a reference is not listed as missing too
             name = ENGINES[engine].name + (", reference" if origin else "")
             well_set = _tuned(cells, rows, engine, dt)
-            lines.append((_truth(scenario), name, *step, cells.get(DEFAULT, ""), well_set))
-    heads = ("Truth", "Engine", *(["Step"] if len(steps) > 1 else []), "As it comes", "Well set")
+            lines.append((name, *step, cells.get(DEFAULT, ""), well_set))
+    heads = ("Engine", *(["Step"] if len(steps) > 1 else []), "As it comes", "Well set")
     console.table(heads, lines)
     if console.plain and not console.quiet:
         console.blank()
@@ -365,10 +351,9 @@ def best_rows(rows: Sequence[Row]) -> frozenset[int]:
 
 def _truth(scenario: Scenario) -> str:
     if scenario.truth is None:
-        return "none"
-    if not math.isfinite(scenario.truth):
-        return "any step" if scenario.unit == "ms" else "any speed"
-    return _unit(f"{scenario.truth:g}", scenario)
+        return ""
+    any_ = "any step" if scenario.unit == "ms" else "any speed"
+    return f" Truth: {_unit(f'{scenario.truth:g}', scenario) if math.isfinite(scenario.truth) else any_}."
 
 
 def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:

@@ -240,7 +240,8 @@ def _cells(row: Row) -> tuple[str, str, str, str]:
     places, error = _places(row.simulated, row.theory), row.error
     theory = "" if row.theory is None else _number(row.theory, row.unit, places)
     shown = "" if error is None else _with_unit(f"{error:+#.3g}", row.unit)
-    if error is not None and abs(error) < 1e-11 * max(abs(row.theory or 0.0), 1e-3):
+    # Beside a theory of 0 the simulated value is round-off where ``_number`` shows it as 0.
+    if error is not None and abs(error) < 1e-11 * (max(abs(row.theory), 1e-3) if row.theory else 1.0):
         shown = "0" if error == 0 else "round-off"
     return row.quantity, _number(row.simulated, row.unit, places), theory, shown
 

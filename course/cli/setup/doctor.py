@@ -202,10 +202,13 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
                 carried = f"{counted(result.carried, 'event')} moved to a new one"
                 repaired = f"The damaged record is kept at {here.workspace.shown(result.kept)}; {carried}."
         store.events()
+        with tempfile.TemporaryFile(dir=root, buffering=0) as trial:
+            trial.write(bytes(1 << 16))
     except CourseError as error:
         return root, repaired, f"{error.message} {error.help}"
-    if not os.access(here.workspace.root, os.W_OK):
-        return root, repaired, f"{root} cannot be written; checks run, and nothing is recorded."
+    except OSError as error:
+        why = error.strerror or error
+        return root, repaired, f"{root} cannot be written ({why}); checks run, and nothing is recorded."
     return root, repaired, None
 
 

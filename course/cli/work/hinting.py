@@ -234,12 +234,12 @@ def reflect(
     rubric = _rubric(here, chosen)
     console.heading(chosen.title, chosen.id)
     console.line(_flowing(rubric.question))
-    kept, graded = _recorded(here, chosen, rubric)
+    kept, graded, draft = _recorded(here, chosen, rubric)
     said = kept
     if answer is not None:
         said = _read(answer)
     elif not said and console.interactive:
-        said = _typed(console)
+        said = _typed(here, chosen, rubric.least_words, draft)
     if said:
         words = len(said.split())
         if words < rubric.least_words:
@@ -288,16 +288,18 @@ def _rubric(here: Here, chosen: Exercise) -> Rubric:
     return rubric
 
 
-def _recorded(here: Here, chosen: Exercise, rubric: Rubric) -> tuple[str, tuple[str, ...]]:
-    said = ""
+def _recorded(here: Here, chosen: Exercise, rubric: Rubric) -> tuple[str, tuple[str, ...], str]:
+    """The answer, its grades, and what was typed of an answer that was left half-way."""
+    said = draft = ""
     graded: tuple[str, ...] = ()
     for event in here.workspace.store.events(KIND, chosen.id):
+        draft = str(event.data.get("draft", ""))
         if "text" in event.data and event.data["text"] != said:
             said, graded = str(event.data["text"]), ()
         held = event.data.get("grades")
         if isinstance(held, list) and len(held) == len(rubric.points):
             graded = tuple(map(str, held))
-    return said, graded
+    return said, graded, draft
 
 
 def _read(path: Path) -> str:
@@ -311,12 +313,16 @@ def _read(path: Path) -> str:
     return data.decode("utf-8", errors="replace").strip()
 
 
-def _typed(console: Console) -> str:
-    console.note("Write your answer; an empty line ends it.")
-    lines = []
-    while line := console.ask("> "):
-        lines.append(line)
-    return "\n".join(lines)
+def _typed(here: Here, chosen: Exercise, least: int, draft: str) -> str:
+    """What is typed after a draft; each line is kept at once, for whoever is interrupted."""
+    console = current()
+    console.note(f"Write your answer; an empty line ends it, once it has {least} words. Each line is kept.")
+    if draft:
+        console.line(f"You began:\n{draft}\nGo on from there.")
+    while (line := console.ask("> ")) or (line is not None and len(draft.split()) < least):
+        draft = f"{draft}\n{line}".lstrip()
+        here.record(KIND, chosen.id, {"draft": draft})
+    return draft.strip()
 
 
 def _judged(
@@ -350,14 +356,13 @@ def _asked(console: Console, rubric: Rubric) -> tuple[str, ...]:
     """A grade for each point; none if the input ends before."""
     found: list[str] = []
     for number, point in enumerate(rubric.points, 1):
-        while True:
+        meant: list[str] = []
+        while not meant:
             said = console.ask(f"{number}. {point} [yes/partly/no] ")
             if said is None:
                 return ()
             meant = [grade for grade in GRADES if said and grade.startswith(said.lower())]
-            if meant:
-                found += meant
-                break
+        found += meant
     return tuple(found)
 
 

@@ -63,7 +63,7 @@ class Probes:
             return None
         # The run may have been told to be shorter or longer than the scene, and ends with a whole step.
         values = values_of(self._now()) | {"duration": self._world.t}
-        return compare(asked, answers[asked.probe], values, guess)
+        return compare(asked, answers[asked.probe], values, guess, self._scene.duration)
 
     def _now(self) -> Chosen:
         return with_settings(self._chosen, self._world.settings)

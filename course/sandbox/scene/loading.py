@@ -219,8 +219,10 @@ def _check_formulas(document: Document[Scene]) -> None:
             chosen = _put_in(scene, dict(settings), document.path)
         except MisfitError as error:
             document.fail(("sets", error.place), error.message, fix=error.help)
-        except UsageError:
-            continue  # that end is out of reach; a user who asks for it is told so
+        except UsageError as error:
+            if settings:
+                continue  # that end is out of reach; a user who asks for it is told so
+            document.fail(("sets",), error.message, fix=error.help)
         values = values_of(chosen)
         for where, text in texts.items():
             if where == _THEORY and settings:
@@ -363,22 +365,22 @@ def guess_of(text: str, unit: str) -> float | None:
 
 
 def compare(
-    asked: Prediction, simulation: float, values: Mapping[str, float], guess: float | None
+    asked: Prediction, simulation: float, values: Mapping[str, float], guess: float | None, whole: float = 0.0
 ) -> Comparison:
     """Put guess, theory and simulation side by side.
 
     Args:
         asked: the scene's question.
         guess: the student's number.
+        whole: how long the scene takes, in s; a run that was cut short of it need not agree.
 
     Raises:
         UsageError: the formula, or one in the texts, has no value for these parameters.
     """
-
     theory = evaluate(asked.theory, values)
     agree = abs(simulation - theory) <= max(asked.agrees * abs(theory), asked.agrees_abs)
     right = None if guess is None else _is_right(guess, theory) or _is_right(guess, simulation)
-    return Comparison(
+    compared = Comparison(
         question=fill(asked.question, values),
         unit=asked.unit,
         guess=guess,
@@ -386,18 +388,22 @@ def compare(
         simulation=simulation,
         guess_right=right,
         agree=agree,
-        verdict=_verdict(asked, guess, right, theory, simulation, agree),
+        verdict="",
         why=fill(asked.why, values),
     )
+    ran = values.get("duration", whole)
+    cut = f"after {ran:g} s of the scene's {whole:g}" if ran < whole * (1 - 1e-6) else ""
+    return msgspec.structs.replace(compared, verdict=_verdict(asked, compared, cut))
 
 
-def _verdict(
-    asked: Prediction, guess: float | None, right: bool | None, theory: float, simulation: float, agree: bool
-) -> str:
+def _verdict(asked: Prediction, compared: Comparison, cut: str) -> str:
+    guess, theory, simulation = compared.guess, compared.theory, compared.simulation
     if math.isnan(simulation):
         return "What the question asks about did not happen in this run."
-    if agree:
+    if compared.agree:
         text = "Theory and simulation agree."
+    elif cut:
+        text = f"The run ended {cut}, perhaps before what the question asks about was over."
     else:
         text = (
             "Theory and simulation do not agree here: one of them leaves something out. "
@@ -406,8 +412,8 @@ def _verdict(
     if guess is None:
         return text
     answer = simulation if abs(guess - simulation) < abs(guess - theory) else theory
-    by = "" if agree else f" by the {'theory' if answer == theory else 'simulation'}"
-    if right:
+    by = "" if compared.agree else f" by the {'theory' if answer == theory else 'simulation'}"
+    if compared.guess_right:
         return f"Your guess is right{by}. {text}"
     is_close = abs(guess - answer) <= max(asked.near * abs(answer), asked.near_abs)
     answer = answer if is_close else theory

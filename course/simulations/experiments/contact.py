@@ -175,7 +175,9 @@ def _run_contact_models(p: Mapping[str, Any]) -> Result:
     )
     thrown = _out_of_an_overlap(p)
     rows = (*_at_rest(p), *thrown, *_of_bounces(rebound, kept, e))
-    higher = ", and higher with a smaller step" if erp * p["overlap"] else ""
+    hops = f"hops {thrown[0].simulated:.3g} m high" if thrown[0].simulated > 1e-9 else "does not hop"
+    if erp * p["overlap"]:
+        hops += ", and with a smaller step higher" if "high" in hops else ", but would with a smaller step"
     low, high = float(rebound["none"].min()), float(rebound["none"].max())
     gained = float(kept["erp"].mean()) - 1
     rises = f"{low:.3f} to {high:.3f} of its height, not to {e**2:.3f}"
@@ -186,8 +188,7 @@ def _run_contact_models(p: Mapping[str, Any]) -> Result:
     corrected = (
         f"Correction with an ERP of {erp:g} in the velocity changes the energy of an elastic ball by "
         f"{percent(gained)} a bounce on average; as split impulse it does not change the velocity. With the "
-        f"first, a ball that starts {p['overlap']:g} m inside the floor hops {thrown[0].simulated:.3g} m "
-        f"high{higher}."
+        f"first, a ball that starts {p['overlap']:g} m inside the floor {hops}."
     )
     return Result(
         rows=rows,

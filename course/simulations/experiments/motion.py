@@ -343,8 +343,11 @@ def _about_axis_2(p: Mapping[str, Any], flips: int) -> str:
     moments = [p["inertia1"], p["inertia2"], p["inertia3"]]
     if p["spin"] == 0:
         return "The body does not spin about axis 2 at the start; set spin."
-    if sorted(moments)[1] != p["inertia2"] or len(set(moments)) < 3:
-        return "Axis 2 is not the middle one, and a spin about it is stable."
+    if moments.count(p["inertia2"]) == 2:
+        return "Axis 2 has the same moment as another axis: a wobble makes the spin drift to that one."
+    if sorted(moments)[1] != p["inertia2"] or moments[0] == moments[1]:
+        large = " Such a large wobble still turned the body over." if flips else ""
+        return f"Axis 2 is not the middle one, and a spin about it is stable.{large}"
     if flips:
         over = f"the body flipped over {times(flips)}"
         return f"Axis 2 is the middle one, and a spin about it does not last: {over}."

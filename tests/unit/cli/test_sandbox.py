@@ -115,6 +115,13 @@ def test_describe_tells_the_run(tmp_path):
     assert "0.004167 s in 1 step\n" in sandbox("head-on", "--duration", "0.004", cwd=tmp_path).stdout
 
 
+def test_a_run_that_was_cut_short_is_not_held_against_theory(tmp_path):
+    short = sandbox("newtons-cradle", "--duration", "0.1", "--guess", "1.62", cwd=tmp_path).stdout
+    assert "Your guess is right by the theory. The run ended after 0.1 s of the scene's 3, perhaps" in short
+    assert "leaves something out" not in short
+    assert "Theory and simulation agree." in sandbox("free-fall", "--duration", "0.5", cwd=tmp_path).stdout
+
+
 def test_json_is_one_object_with_everything(tmp_path):
     done = sandbox("play", "unequal-masses", "--set", "ratio=1", "--headless", "--json", cwd=tmp_path)
     data = json.loads(done.stdout)

@@ -107,6 +107,7 @@ def test_every_scene_teaches_asks_and_shows_what_it_holds(scene):
         ('A test."', 'A test."' + DEEP.format("ball.position.1", "deep"), 50, "divide it"),
         ('A test."', 'A test."' + DEEP.format('"ball.radius"', "deep - 1"), 50, "-0.9"),
         ('A test."', 'A test."' + DEEP.format("duration", "2"), 42, "depends on deep"),
+        ('A test."', 'A test."' + DEEP.format("duration", "1 / (deep - 2)"), 49, "float division by zero"),
         ('A test."', 'A test."\n[[joint]]\nkind = "rod"\na = "ball"\nb = "ball"', 42, "two"),
     ],
 )

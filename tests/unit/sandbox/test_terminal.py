@@ -508,6 +508,19 @@ async def test_the_list_of_events_tells_what_happened(app, pilot):
 
 
 @on("head-on")
+async def test_in_the_past_nothing_is_told_that_is_still_to_come(app, pilot):
+    app.frames(30)
+    assert "meet at 3.00 m/s" in app.events.text
+    await pilot.press("less_than_sign", "less_than_sign")
+    app.frames(2)
+    assert app.stage.t < 0.5
+    assert "meet at" not in app.events.text
+    await pilot.press("k")
+    app.frames(2)
+    assert "meet at 3.00 m/s" in app.events.text
+
+
+@on("head-on")
 async def test_frames_in_which_nothing_moves_send_nothing(app, pilot):
     await pilot.press("space")
     app.frames(2)

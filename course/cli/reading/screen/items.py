@@ -280,7 +280,7 @@ class FigureItem(Item):
             page.reader.say(f"course lesson {lesson} --figures DIR writes the pictures.")
             return
         page.reader.say("Drawing the figure …")
-        page.pictures.open(self.target, lambda words: page.from_thread(page.reader.say, words))
+        page.pictures.open(self.target, lambda words: page.reader.call_later(page.reader.say, words))
 
 
 def unjudged(page: Page) -> AnswerItem | None:

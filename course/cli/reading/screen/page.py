@@ -5,7 +5,6 @@ Above the text stands a head line, below it a position bar and a line of keys.
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -215,14 +214,10 @@ class Page(Widget):
         self._opened: dict[str, InProgress] = {}
         self._place_timer: Timer | None = None
         self._head, self._keys, self._position, self._share, self._told = "", "", "", 0.0, ""
-        self.practice.changed = lambda name: self.from_thread(self.show_answer, name)
+        # What another thread asks for is queued. No thread waits for it: who leaves may wait for that thread.
+        self.practice.changed = partial(reader.call_later, self.show_answer)
         if pictures is not None:
-            pictures.drawn = lambda name: self.from_thread(self._take_picture, name)
-
-    def from_thread(self, act: Callable[..., object], *arguments: object) -> None:
-        """Do something here that another thread asks for."""
-        with contextlib.suppress(RuntimeError):  # the reader is gone
-            self.reader.call_from_thread(act, *arguments)
+            pictures.drawn = partial(reader.call_later, self._take_picture)
 
     # -- the record --------------------------------------------------------------------------------------
 
@@ -419,7 +414,7 @@ class Page(Widget):
     def at_bench(self) -> Bench:
         """Where this lesson's cells run."""
         if self.bench is None:
-            self.bench = Bench(self.progress, partial(self.from_thread, self._took, self.progress))
+            self.bench = Bench(self.progress, partial(self.reader.call_later, self._took, self.progress))
         return self.bench
 
     def end_cells(self) -> None:

@@ -50,7 +50,7 @@ class Bench:
         done: called in the cells' thread with the cell, the code that ran and its result.
     """
 
-    def __init__(self, progress: InProgress, done: Callable[[Cell, str, CellOutput], None]) -> None:
+    def __init__(self, progress: InProgress, done: Callable[[Cell, str, CellOutput], object]) -> None:
         self._progress = progress
         self._done = done
         self._runner: CellRunner | None = None
@@ -205,7 +205,7 @@ class Practice:
     """
 
     def __init__(self, catalog: Catalog, workspace: Workspace | None) -> None:
-        self.changed: Callable[[str], None] = lambda _: None
+        self.changed: Callable[[str], object] = lambda _: None
         self._catalog = catalog
         self._workspace = workspace
         self._standings: dict[str, Standing] = {}
@@ -213,7 +213,6 @@ class Practice:
         self._opened: dict[str, bytes] = {}
         self._thread: threading.Thread | None = None
         self._process: subprocess.Popen[bytes] | None = None
-        self._closed = False
 
     @property
     def possible(self) -> bool:
@@ -300,7 +299,6 @@ class Practice:
         return True
 
     def close(self) -> None:
-        self._closed = True
         if self._process is not None:
             self._process.kill()
         if self._thread is not None:
@@ -321,8 +319,7 @@ class Practice:
                     fixed = tuple(sorted(history.changed_tasks()[0]))
             now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")), fixed=fixed)
         self._standings[name] = now
-        if not self._closed:
-            self.changed(name)
+        self.changed(name)
 
     def _reply(self, name: str, command: str) -> dict[str, Any]:
         assert self._workspace is not None
@@ -374,7 +371,7 @@ class Drawer:
     """
 
     def __init__(self) -> None:
-        self.drawn: Callable[[str], None] = lambda _: None
+        self.drawn: Callable[[str], object] = lambda _: None
         self._drawn: dict[tuple[str, int, int], list[Text]] = {}
         self._asked: set[tuple[str, int, int]] = set()
         self._waiting: dict[int, Callable[[dict[str, Any]], None]] = {}
@@ -408,7 +405,7 @@ class Drawer:
             self._ask({**request, "columns": columns, "rows": rows}, take)
         return self._drawn.get(key, [Text()] * rows)
 
-    def open(self, figure: str, say: Callable[[str], None]) -> None:
+    def open(self, figure: str, say: Callable[[str], object]) -> None:
         """Show a figure as on paper in the system's viewer, or say where its file is."""
 
         def take(answer: dict[str, Any]) -> None:

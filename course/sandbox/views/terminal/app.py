@@ -151,7 +151,7 @@ class SandboxApp(FullScreenApp):
         self.stage = stage
         self.sight = Sight(stage, colour=self.in_colour)
         self.pointer = Pointer(stage, self.sight)
-        self._lines: list[str] = []
+        self._lines: list[tuple[float, str]] = []
         self._anew = stage.anew
         self._compared = ""
         if not self._first:
@@ -222,7 +222,8 @@ class SandboxApp(FullScreenApp):
             self._anew, self._lines, told = stage.anew, [], stage.narrator.told()
             self.sight.forget()
             self.renew()
-        self._lines = [*self._lines, *(clean(line["text"]) for line in told)][-400:]
+        heard = ((line.get("t", self.world.t), clean(line["text"])) for line in told)
+        self._lines = [*self._lines, *heard][-400:]
         if not self.calm:
             self.sight.flash(stage.heard, now)
         stage.heard = []
@@ -282,9 +283,9 @@ class SandboxApp(FullScreenApp):
             self.keys.show([keys_line(self._room.width, paused=paused, past=past, compared=compared)])
 
     def _told(self, width: int, height: int) -> list[Line]:
-        """The latest events, whole ones, newest at the bottom."""
+        """The latest events before the time that is shown, whole ones, newest at the bottom."""
         lines: list[Line] = []
-        for text in reversed(self._lines[-height:] if height else []):
+        for text in reversed([text for t, text in self._lines if t <= self.stage.t]):
             pieces = wrapped(text, max(10, width - 3))
             if lines and len(lines) + len(pieces) > height:
                 break
@@ -417,7 +418,7 @@ class SandboxApp(FullScreenApp):
         self.push_screen(PageOverlay("Keys, and this scene", pages))
 
     def action_events(self) -> None:
-        page = self._lines or ["Nothing happened yet."]
+        page = [text for _, text in self._lines] or ["Nothing happened yet."]
         self.push_screen(PageOverlay("What happened", page, at_end=True))
 
     # -- keys ------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 """What was done and learned, what there is to read, and what this machine can do."""
 
 import shutil
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -161,6 +162,19 @@ def test_doctor_repairs_a_damaged_record_and_keeps_it(course, workspace):
     assert course("doctor", "--repair").code == 0
     assert (workspace / ".course" / "progress.damaged.sqlite").read_bytes().startswith(b"not a database")
     assert Store(record).events() == ()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="has no device that is always full")
+@pytest.mark.usefixtures("unprobed")
+def test_doctor_finds_a_full_disk_by_writing_to_it(course, workspace, monkeypatch):
+    def full(**where):
+        assert where == {"dir": str(workspace), "buffering": 0}
+        return Path("/dev/full").open("wb", buffering=0)
+
+    monkeypatch.setattr(doctor.tempfile, "TemporaryFile", full)
+    course("doctor").ends(
+        4, "cannot be written (No space left on device); checks run", "Something is missing."
+    )
 
 
 def test_doctor_never_advises_switching_a_protection_off(course):

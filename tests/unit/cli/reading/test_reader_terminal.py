@@ -60,6 +60,23 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(terminal, mine
     assert store.events("bookmark", LESSON)[-1].data["block"] == place["block"]
 
 
+def test_a_reader_may_leave_while_a_cell_runs(terminal):
+    terminal.line(f"{sys.executable} -m course lesson why-simulate")
+    terminal.wait("min left")
+    while "r run" not in (screen := terminal.still()):
+        terminal.type("s" if "s skip" in screen else " ")
+        terminal.wait_for_other(screen)
+    terminal.type("e")
+    terminal.wait("keep, run")
+    terminal.keys("C-End")
+    terminal.type("; [0 for _ in iter(int, 1)]")
+    terminal.keys("C-r")
+    terminal.wait("the cell runs")
+    terminal.type("q")
+    terminal.wait("Next: course")
+    assert terminal.state() == AS_IT_WAS
+
+
 def test_after_a_lesson_in_watch_a_stop_and_fg_go_on(terminal, mine):
     assert in_process("-C", mine.root, "start", "integrators").returncode == 0
     terminal.line(f"{sys.executable} -m course watch integrators")

@@ -222,6 +222,19 @@ def test_in_a_terminal_it_is_typed_and_graded_point_by_point(course, passed, wri
     assert [point["grade"] for point in body["points"]] == ["yes", "partly"]
 
 
+def test_what_was_typed_is_kept_where_it_ends_too_early_and_an_early_empty_line_ends_nothing(
+    course, passed, write, monkeypatch
+):
+    check(course, write)
+    monkeypatch.setattr(Console, "interactive", property(lambda self: not self.json))
+    monkeypatch.setattr("sys.stdin", io.StringIO("Whenever\n\nhalf is\n"))
+    course("reflect", "doubling").refuses(2, "3 words")
+    assert course("reflect", "doubling", "--json").json["answer"] is None
+    monkeypatch.setattr("sys.stdin", io.StringIO("too little.\n\ny\ny\n"))
+    course("reflect", "doubling").ends(0, "You began:\nWhenever\n\nhalf is\nGo on from there.")
+    assert course("reflect", "doubling", "--json").json["answer"] == "Whenever\n\nhalf is\ntoo little."
+
+
 def test_an_exercise_without_a_question_says_which_have_one(course, passed):
     course("reflect", "halving").refuses(5, "doubling")
 

@@ -34,13 +34,17 @@ from course.printable import counted, one_line, some
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, format_points, in_points
 
 _CANVAS = Needs(
-    ("canvas_id", "sis_user_id"), "Canvas", "Give Canvas' gradebook export with --roster, or add the column."
+    ("canvas_id", "sis_user_id"),
+    "Canvas",
+    "Give Canvas' gradebook export with --roster, or add the column.",
+    lambda person: (person.canvas_id or person.sis_user_id) and is_safe(person.sis_user_id),
 )
 _MOODLE = Needs(
     ("moodle_key",),
     "Moodle",
     "Add the column: each student's user name, ID number or e-mail address in Moodle. Or fill in Moodle's "
     "grading worksheet: --format moodle-worksheet --roster FILE.",
+    lambda person: person.moodle_key and _stays(person.moodle_key),
 )
 
 
@@ -51,12 +55,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
     needs its own. An empty cell takes away what Canvas has, an excuse too: where we have no score, what its
     gradebook says is written back.
     """
-    selection = select(
-        results,
-        options,
-        usable=lambda one: bool(one.canvas_id or one.sis_user_id) and is_safe(one.sis_user_id),
-        needs=_CANVAS,
-    )
+    selection = select(results, options, _CANVAS)
     _check_assignments(selection, options)
     check_settled(selection, options)
     most = {exercise.id: exercise.max_points for exercise in results.exercises()}
@@ -155,9 +154,7 @@ def _kept(written: Written) -> str:
 
 def write_moodle(path: Path, results: Results, options: ExportOptions) -> Written:
     """A file for Moodle's grade import, whose columns the teacher maps; an empty cell is no grade."""
-    selection = select(
-        results, options, usable=lambda one: bool(one.moodle_key) and _stays(one.moodle_key), needs=_MOODLE
-    )
+    selection = select(results, options, _MOODLE)
     check_settled(selection, options)
     headings = ["moodle_key", "name", "email", *(results.title(name) for name in selection.exercises)]
     rows = []
@@ -218,7 +215,12 @@ def _table(selection: Selection, scales: Mapping[str, float] | None = None) -> d
 
 
 _KEY, _GRADE, _MOST = "Identifier", "Grade", "Maximum Grade"
-_NEEDS = Needs(("moodle_key",), "Moodle", "Give the worksheet of Moodle's 'Download grading worksheet'.")
+_NEEDS = Needs(
+    ("moodle_key",),
+    "Moodle",
+    "Give the worksheet of Moodle's 'Download grading worksheet'.",
+    lambda person: person.moodle_key,
+)
 _MODIFIED, _FEEDBACK, _OPEN = "Last modified (grade)", "Feedback comments", "Grade can be changed"
 
 
@@ -231,7 +233,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     if options.worksheet is None:
         advice = "Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'."
         raise UsageError("There is no worksheet to fill in.", help=advice, code="needs_roster")
-    selection = select(results, options, usable=lambda person: bool(person.moodle_key), needs=_NEEDS)
+    selection = select(results, options, _NEEDS)
     if len(selection.exercises) != 1:
         raise UsageError(
             f"A worksheet is about one assignment, and this is about {len(selection.exercises)} exercises.",

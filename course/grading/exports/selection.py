@@ -50,11 +50,13 @@ class Needs:
     Attributes:
         columns: of our own roster, one of which has to have it.
         give: where to get the key, as the beginning of a sentence.
+        usable: whether a row has the key, as this format can write it.
     """
 
     columns: tuple[str, ...]
     platform: str
     give: str
+    usable: Callable[[Person], object]
 
     def absent(self) -> str:
         """What a roster lacks that has none of the columns."""
@@ -109,18 +111,11 @@ class Selection:
             yield replace(one, score=0.0) if self.zeros and one.missing else one
 
 
-def select(
-    results: Results,
-    options: ExportOptions,
-    usable: Callable[[Person], bool] | None = None,
-    needs: Needs | None = None,
-) -> Selection:
+def select(results: Results, options: ExportOptions, needs: Needs | None = None) -> Selection:
     """Select the content of an export.
 
     Args:
-        usable: whether a row of the roster has the key this format finds people by; without it a roster is
-            not needed.
-        needs: that key.
+        needs: the key this format finds people by; without one a roster is not needed.
 
     Raises:
         NotFoundError: no such exercise.
@@ -131,7 +126,7 @@ def select(
     unknown = [name for name in (*options.exercises, *options.assignments) if name not in known]
     if unknown:
         raise no_exercise(unknown[0], sorted(known))
-    if usable is not None and results.roster is None:
+    if needs and results.roster is None:
         message = "This format finds students by the platform's ids, which are in a roster."
         advice = "Add --roster FILE; docs/instructor.md shows one."
         raise UsageError(message, help=advice, code="needs_roster")
@@ -145,19 +140,19 @@ def select(
             message = f"{results.roster.called} {needs.absent()}. Nothing was written."
             raise MissingCapabilityError(message, help=needs.give, code="unmatched_students")
         people, unmatched = results.roster.match(results.students(), results.downloads)
-        if usable is not None:
-            keyless = [student for student, person in people.items() if not usable(person)]
+        if needs:
+            keyless = [student for student, person in people.items() if not needs.usable(person)]
             unmatched |= dict.fromkeys(keyless, f"No usable {key}")
-            people = {student: person for student, person in people.items() if usable(person)}
+            people = {student: person for student, person in people.items() if needs.usable(person)}
         tests = [student for student, why in unmatched.items() if why == FOR_TESTS]
         blocking = {student: why for student, why in unmatched.items() if why != FOR_TESTS}
         if blocking and not options.partial:
             raise _unmatched(results, blocking, key)
-        if tests and usable is not None:
+        if tests and needs:
             written.notes.append(f"{some(tests, SHOWN)} is {FOR_TESTS} and was left out.")
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
-    if usable is not None and not options.exercises:
+    if needs and not options.exercises:
         # A platform needs no columns without grades.
         there = {effective.exercise for effective in results.all()}
         exercises = tuple(name for name in exercises if name in there) or exercises

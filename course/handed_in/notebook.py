@@ -459,6 +459,7 @@ def _notes(
         for cell in cells
         if cell.tags.get("role") in (None, SOLUTION, SETUP)
         for line, text in cell.dropped
+        if not text.startswith("%course_")  # a check or a hint that was asked for
     ]
     notes = [
         f"{where[:1].upper()}{where[1:]}, line {line}: left out, since it is not Python: {one_line(text, 80)}"

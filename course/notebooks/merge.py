@@ -33,6 +33,16 @@ def is_untouched(data: bytes) -> bool:
     return all(slots) and len(set(slots)) == len(slots) and not any(cell.edited for cell in cells)
 
 
+def worked_in(data: bytes, exercise: str) -> bool:
+    """Whether a notebook was generated for an exercise, whatever its file is called, and was edited since."""
+    try:
+        about = _read(data).get("metadata", {}).get("course")
+    except CannotMergeError:
+        return False
+    mine = isinstance(about, dict) and (about.get("kind"), about.get("id")) == ("exercise", exercise)
+    return mine and not is_untouched(data)
+
+
 def merged(old: bytes, new: bytes) -> bytes:
     """The newer notebook with the student's work from the older one; ``old`` itself if nothing is newer.
 

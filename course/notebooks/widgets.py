@@ -75,6 +75,8 @@ class Predict(Form):
     """
 
     _esm = (_SCRIPTS / "predict.js").read_text("utf-8")
+    # JupyterLab's own grey is too pale on its dark theme.
+    _css = ".course-prediction::placeholder { color: inherit; opacity: 0.8; }"
 
     def __init__(self, asked: Any) -> None:
         super().__init__()

@@ -109,13 +109,30 @@ class Here:
         return *self.catalog.exercises(), *self.catalog.warm_ups()
 
     def misnamed(self, exercise: Exercise) -> str:
-        """A file beside the student's whose name differs in capitals only; "" if there is none."""
+        """A file beside the student's that has another name and holds work; "" if there is none.
+
+        The module with other capitals, or the notebook under any other name, edited last of all of them.
+        """
+        from course.notebooks.merge import worked_in
+
         own = self.workspace.path(exercise.place, exercise.module)
+        notebook = own.with_suffix(".ipynb")
         with suppress(OSError):
-            others = [path for path in sorted(own.parent.iterdir()) if path.name != own.name]
+            others = [path for path in sorted(own.parent.iterdir()) if path not in (own, notebook)]
             alike = [path for path in others if path.name.lower() == own.name.lower()]
             # Where capitals do not count, as on Windows and macOS, it is the student's file itself.
-            return next((path.name for path in alike if not (own.exists() and path.samefile(own))), "")
+            if found := next((path.name for path in alike if not (own.exists() and path.samefile(own))), ""):
+                return found
+            edited: dict[bytes, tuple[float, str]] = {}  # by content: an exact copy is nothing to speak of
+            for path in (*others, notebook, own):
+                if path.suffix not in (".ipynb", own.suffix) or not path.is_file():
+                    continue
+                data = path.read_bytes()
+                own_work = path == own and self.workspace.is_edited(exercise.place, own.name, data)
+                if own_work or worked_in(data, exercise.id):
+                    edited[data] = path.stat().st_mtime, path.name
+            last = max(edited.values(), default=(0.0, own.name))[1]
+            return "" if last in (own.name, notebook.name) else last
         return ""
 
     def moved(self, exercise: Exercise) -> str:
@@ -156,14 +173,18 @@ class Here:
             said = f"{shown} is a link to {path.readlink()}, and no file is there."
             return UngradableError(said, help="Remove the link, or put the file back.", code="no_file")
         other, moved = self.misnamed(exercise), self.moved(exercise)
-        advice = f"Rename {other} to {exercise.module}: capitals count." if other else ""
-        if moved and not other:
-            advice = f"There is {moved}. The folder must be called {exercise.place}: rename it back."
         given = {one.name for one in exercise.given}
         beside = [one.name for one in sorted(path.parent.glob("*.py")) if one.name not in given]
-        if len(beside) == 1 and not advice:
-            advice = f"There is {beside[0]} beside it: if that is yours, rename it to {exercise.module}."
-        advice = advice or f"`course start {exercise.id}` puts one there."
+        if len(beside) == 1:
+            other = other or beside[0]
+        right = Path(exercise.module).with_suffix(Path(other).suffix).name
+        advice = f"`course start {exercise.id}` puts one there."
+        if other:
+            advice = f"There is {other} beside it: if that is yours, rename it to {right}."
+        if other.lower() == right.lower():
+            advice = f"Rename {other} to {right}: capitals count."
+        elif moved and not other:
+            advice = f"There is {moved}. The folder must be called {exercise.place}: rename it back."
         return UngradableError(f"There is no file {shown}.", help=advice, code="no_file")
 
     def stub(self, exercise: Exercise) -> bytes:

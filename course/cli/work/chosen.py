@@ -109,6 +109,17 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Stu
     return _beside_notebook(here, module)
 
 
+def name_of_work(here: Here, exercise: Exercise) -> str:
+    """The name of the file that counts; the module's where neither can be read."""
+    notebook = _notebook_name(exercise)
+    with suppress(OSError, CourseError):
+        paths = [here.workspace.path(exercise.place, name) for name in (exercise.module, notebook)]
+        if paths[1].is_file() and not paths[0].exists():
+            return notebook
+        return chosen_work(here, exercise).name
+    return exercise.module
+
+
 def worked_on(here: Here) -> tuple[Exercise, ...]:
     """The exercises that were started, that have a file, or whose notebook was edited.
 
@@ -143,10 +154,14 @@ def work_of(
             why_not = f"{exercise.module} was worked in too, and is handed in" if notebook else why_not
         elif notebook is not None:
             chosen.append(notebook)
-        elif there or exercise.id in here.workspace.started() or here.moved(exercise):
+        else:
             other = here.misnamed(exercise) or here.moved(exercise)
-            why = (_STUB if there else "not there") + (f"; {other} is not read" if other else "")
-            left_out.append(FileReply(path=f"{exercise.place}/{exercise.module}", action=why))
+            unread = f"; {other} is not read under that name" if other else ""
+            if there or exercise.id in here.workspace.started() or (other and not why_not):
+                why = (_STUB if there else "not there") + unread
+                left_out.append(FileReply(path=f"{exercise.place}/{exercise.module}", action=why))
+            elif why_not:
+                why_not += unread
         if why_not:
             path = f"{exercise.place}/{_notebook_name(exercise)}"
             left_out.append(FileReply(path=path, action=why_not))
@@ -165,10 +180,18 @@ def _notebook_name(exercise: Exercise) -> str:
 
 def _module(here: Here, exercise: Exercise) -> StudentWork:
     source = here.source(exercise)
-    name, other = exercise.module, here.misnamed(exercise)
-    note = f"{exercise.place}/{other} is not read: the file that counts is {name}. Capitals matter."
-    notes = (note,) if other else ()
-    return StudentWork(exercise, name, source, source, here.stub(exercise), notes=notes)
+    name = exercise.module
+    return StudentWork(
+        exercise, name, source, source, here.stub(exercise), notes=_unread(here, exercise, name)
+    )
+
+
+def _unread(here: Here, exercise: Exercise, name: str) -> tuple[str, ...]:
+    """A note on the student's file that is not read because of its name, if there is one."""
+    other = here.misnamed(exercise)
+    why = " Capitals matter." if other.lower() == name.lower() else ""
+    said = f"{exercise.place}/{other} is not read: the file that counts is {name}.{why}"
+    return (said,) if other else ()
 
 
 def _notebook(here: Here, exercise: Exercise) -> StudentWork:
@@ -194,7 +217,8 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
         fix = "Keep data out of them; the exercise needs none."
         raise UngradableError(problem, help=fix, code="too_large")
     given = notebook_source(exercise_notebook(here.catalog, exercise), exercise)
-    return StudentWork(exercise, name, data, module.source, given.source, module)
+    notes = _unread(here, exercise, name)
+    return StudentWork(exercise, name, data, module.source, given.source, module, notes)
 
 
 def _is_edited(here: Here, work: StudentWork) -> bool:

@@ -3,7 +3,7 @@
 import json
 import sys
 from pathlib import Path
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 
 import pytest
 
@@ -94,6 +94,8 @@ def test_a_function_checked_before_the_others_were_run_is_an_attempt_at_it_alone
     assert attempt["only"] == "double"
     assert (attempt["score"], attempt["max_score"], attempt["passed"]) == (2.0, 2.0, True)
     assert [check["task"] for check in attempt["checks"]] == ["double"]
+    to_do = check_in([DOUBLE.partition("return")[0] + "raise NotImplementedError"], "double")
+    assert to_do.summary == "The one public check of double is to do: 0 of 2 points."
     wrong = check_in([DOUBLE.replace("x + x", "x + x + x")], "double")
     assert wrong.summary == "The one public check of double fails: 0 of 2 points."
 
@@ -253,6 +255,8 @@ def test_hints_progress_and_handing_in_need_no_terminal(here, capsys):
 
     class Registered:
         events = SimpleNamespace(register=lambda *_: None)
+        user_ns = MappingProxyType({})
+        history_manager = SimpleNamespace(input_hist_raw=["", ""])
 
         def register_magic_function(self, made, _kind, name):
             magics[name] = made

@@ -31,6 +31,7 @@ from course.handed_in.notebook import (
     source_of,
     typed_cell,
 )
+from course.isolation.inside import statements
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage, image_of
 from course.printable import counted, some
@@ -201,7 +202,8 @@ def _first_lines(text: str) -> list[str]:
 # the file is not known, the cells that were run are all there is.
 
 
-_DEF = re.compile(r"^(?:async\s+)?def\s+(\w+)|^class\s+(\w+)", re.MULTILINE)
+#: What a note on cells that were run and not saved begins with, after the notebook's name.
+NOT_SAVED = "is not saved as you ran it"
 #: Cells that are not in the file get numbers from here on.
 _UNSAVED = 1_000_000
 #: Cells that a note names.
@@ -263,25 +265,6 @@ def at_hand(shell: Any, exercise: Exercise) -> NotebookSource:
     Raises:
         UngradableError: it has none of the exercise's functions.
     """
-    module, unsaved = _now(shell, exercise)
-    if unsaved:
-        unsaved = f"{unsaved} This check took what you ran. Only what is saved is handed in, so save it."
-    return replace(module, notes=tuple(note for note in (*module.notes, unsaved) if note))
-
-
-def not_saved(shell: Any, exercise: Exercise) -> str:
-    """Which cells with an exercise's code were run and are not in the notebook's file; "" if none."""
-    with contextlib.suppress(CourseError):
-        return _now(shell, exercise)[1]
-    return ""
-
-
-def _now(shell: Any, exercise: Exercise) -> tuple[NotebookSource, str]:
-    """The module that a shell's notebook makes up, and a sentence on what of it is not saved.
-
-    Raises:
-        UngradableError: it has none of the exercise's functions.
-    """
     seen: Runs | None = getattr(shell, "course_runs", None)
     runs = seen.so_far() if seen else [Run(n, text) for n, text in enumerate(typed_in(shell), 1)]
     path = _file_of(shell, exercise, runs)
@@ -290,9 +273,9 @@ def _now(shell: Any, exercise: Exercise) -> tuple[NotebookSource, str]:
             saved, at = code_cells(read_notebook(path), path.name), path.stat().st_mtime
             deleted = {cell for cell, when in seen.deleted.items() if when > at} if seen else set()
             kept = [cell for cell in saved if cell.id not in deleted or not cell.id]
-            module, unsaved = _as_saved_now(kept, at, runs, exercise, path.name)
-            return replace(module, notes=(*module.notes, *_not_handed_in(path, exercise))), unsaved
-    return module_of([run.text for run in runs], exercise), ""
+            module = _as_saved_now(kept, at, runs, exercise, path.name)
+            return replace(module, notes=(*module.notes, *_not_handed_in(path, exercise)))
+    return module_of([run.text for run in runs], exercise)
 
 
 def _not_handed_in(path: Path, exercise: Exercise) -> Iterable[str]:
@@ -330,8 +313,8 @@ def _file_of(shell: Any, exercise: Exercise, runs: Sequence[Run]) -> Path | None
 
 def _as_saved_now(
     saved: list[CodeCell], at: float, runs: Sequence[Run], exercise: Exercise, name: str
-) -> tuple[NotebookSource, str]:
-    """The module of a file, with what was run after it was saved, and a sentence on what of it counts.
+) -> NotebookSource:
+    """The module of a file, with what was run after it was saved.
 
     Args:
         saved: its cells.
@@ -361,16 +344,18 @@ def _as_saved_now(
         if cells[-1].text.replace("pass", "").strip():  # not a magic alone
             unsaved.append(run.number)
     module = source_of(cells, exercise, name, called)
-    if changed:
-        note = (
-            f"Changed since you ran it: {some(changed, _NAMED)}. This check took it as it is in the file now."
-        )
-        module = replace(module, notes=(*module.notes, note))
+    notes = list(module.notes)
     with contextlib.suppress(UngradableError):
         if fingerprint(source_of(saved, exercise, name).source) == fingerprint(module.source):
-            return module, ""
-    listed = some([f"In [{number}]" for number in sorted(unsaved)], _NAMED)
-    return module, f"{name} is not saved as you ran it: {listed}." if unsaved else ""
+            unsaved = []  # none that counts
+    if unsaved:
+        listed = some([f"In [{number}]" for number in sorted(unsaved)], _NAMED)
+        notes.append(f"{name} {NOT_SAVED}: {listed}. Only what is saved is handed in: save it.")
+    if changed:
+        notes.append(
+            f"Changed since you ran it: {some(changed, _NAMED)}. This check took it as it is in the file now."
+        )
+    return replace(module, notes=tuple(notes))
 
 
 def _placed(saved: list[CodeCell], at: float, runs: Sequence[Run]) -> tuple[dict[int, Run], list[Run]]:
@@ -437,17 +422,13 @@ def defines_all(source: bytes, names: Sequence[str]) -> bool:
     tree = typed_cell(1, source.decode()).tree
     if tree is None:
         return True
-    assigned = {
-        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
-    }
-    defined = {node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
-    return set(names) <= defined | assigned
+    return set(names) <= {name for node in tree.body for name in statements.bound(node)}
 
 
 def _names(cell: CodeCell) -> set[str]:
     """The functions and classes that a cell defines, or would define if its syntax were right."""
     if cell.tree is None:
-        return {first or second for first, second in _DEF.findall(cell.text)}
+        return set(statements.defined_in(cell.text))
     return {
         node.name
         for node in cell.tree.body

@@ -7,6 +7,7 @@ a workspace the attempt is recorded as `course check` records it.
 """
 
 import ast
+import contextlib
 import os
 import re
 import subprocess
@@ -20,7 +21,7 @@ from course.catalog.models import Exercise
 from course.errors import CourseError
 from course.handed_in.notebook import SOLUTION
 from course.notebooks.cells import Cell, document
-from course.notebooks.checking import CheckTable, Runs, at_hand, check, not_saved
+from course.notebooks.checking import NOT_SAVED, CheckTable, Runs, at_hand, check
 from course.notebooks.show import ReportPage
 from course.scoring.judging.session import check_files, has_report, report_of
 from course.scoring.judging.submission import Submission
@@ -61,13 +62,18 @@ def register(shell: Any) -> None:
     def course_submit(line: str) -> None:
         """Write the file to hand in: %course_submit [EXERCISE ...]"""
         _run("submit", *line.split())
-        for unsaved in filter(None, (not_saved(shell, one) for one in Catalog().exercises())):
-            # A cell's output is its screen.
-            print(f"{unsaved} What is handed in is the file: save it, and run this cell again.")  # noqa: T201
+        for exercise in Catalog().exercises():
+            with contextlib.suppress(CourseError):  # this notebook is not about it
+                notes = at_hand(shell, exercise).notes
+                print(*(f"{note}\n" for note in notes if NOT_SAVED in note), sep="", end="")  # noqa: T201
 
     shell.register_magic_function(course_check, "line_cell", "course_check")
     for magic in (course_report, course_hint, course_progress, course_submit):
         shell.register_magic_function(magic, "line", magic.__name__)
+
+
+#: A command of which there is a magic, about an exercise.
+_COMMAND = re.compile(r"\bcourse (check|hint|progress|submit)(?= [a-z][\w-]*(?![\w./-]))")
 
 
 def _run(*words: str) -> None:
@@ -77,11 +83,7 @@ def _run(*words: str) -> None:
         capture_output=True, encoding="utf-8", errors="replace", check=False,
         env={**os.environ, "PYTHONIOENCODING": "utf-8", "NO_COLOR": "1"},
     )  # fmt: skip
-    said = re.sub(
-        r"\bcourse (check|hint|progress|submit)(?= [a-z][\w-]*(?![\w./-]))",
-        r"%course_\1",
-        done.stdout + done.stderr,
-    )
+    said = _COMMAND.sub(r"%course_\1", done.stdout + done.stderr)
     print(said.rstrip("\n"))  # noqa: T201 - a cell's output is its screen
 
 

@@ -8,6 +8,7 @@ is not safe, nothing is merged, and the reason is given.
 """
 
 import ast
+import contextlib
 import json
 from dataclasses import dataclass
 from typing import Any
@@ -35,12 +36,11 @@ def is_untouched(data: bytes) -> bool:
 
 def worked_in(data: bytes, exercise: str) -> bool:
     """Whether a notebook was generated for an exercise, whatever its file is called, and was edited since."""
-    try:
-        about = _read(data).get("metadata", {}).get("course")
-    except CannotMergeError:
-        return False
-    mine = isinstance(about, dict) and (about.get("kind"), about.get("id")) == ("exercise", exercise)
-    return mine and not is_untouched(data)
+    with contextlib.suppress(CannotMergeError):
+        match _read(data)["metadata"].get("course"):
+            case {"kind": "exercise", "id": name}:
+                return bool(name == exercise) and not is_untouched(data)
+    return False
 
 
 def merged(old: bytes, new: bytes) -> bytes:

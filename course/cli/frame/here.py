@@ -108,14 +108,17 @@ class Here:
     def _every(self) -> tuple[Exercise, ...]:
         return *self.catalog.exercises(), *self.catalog.warm_ups()
 
-    def misnamed(self, exercise: Exercise) -> str:
-        """A file beside the student's that has another name and holds work; "" if there is none.
+    def unread(self, exercise: Exercise) -> str:
+        """A file that is not read because of its name though it holds work; "" if there is none.
 
-        The module with other capitals, or the notebook under any other name, edited last of all of them.
+        The module with other capitals; the notebook under any other name, edited last of all that hold work;
+        or either in a folder of another name.
         """
         from course.notebooks.merge import worked_in
 
         own = self.workspace.path(exercise.place, exercise.module)
+        if not own.parent.exists():
+            return self._moved(exercise)
         notebook = own.with_suffix(".ipynb")
         with suppress(OSError):
             others = [path for path in sorted(own.parent.iterdir()) if path not in (own, notebook)]
@@ -124,9 +127,8 @@ class Here:
             if found := next((path.name for path in alike if not (own.exists() and path.samefile(own))), ""):
                 return found
             edited: dict[bytes, tuple[float, str]] = {}  # by content: an exact copy is nothing to speak of
-            for path in (*others, notebook, own):
-                if path.suffix not in (".ipynb", own.suffix) or not path.is_file():
-                    continue
+            copies = [path for path in others if path.suffix == notebook.suffix]
+            for path in filter(Path.is_file, (*copies, notebook, own) if copies else ()):
                 data = path.read_bytes()
                 own_work = path == own and self.workspace.is_edited(exercise.place, own.name, data)
                 if own_work or worked_in(data, exercise.id):
@@ -135,10 +137,8 @@ class Here:
             return "" if last in (own.name, notebook.name) else last
         return ""
 
-    def moved(self, exercise: Exercise) -> str:
+    def _moved(self, exercise: Exercise) -> str:
         """The exercise's file, or its notebook, in a folder of another name; "" if there is none."""
-        if self.workspace.path(exercise.place, exercise.module).parent.exists():
-            return ""
         names = exercise.module, Path(exercise.module).with_suffix(".ipynb").name
         with suppress(OSError):
             folders = [path for path in sorted(self.workspace.root.iterdir()) if path.is_dir()]
@@ -172,19 +172,18 @@ class Here:
         if path.is_symlink():
             said = f"{shown} is a link to {path.readlink()}, and no file is there."
             return UngradableError(said, help="Remove the link, or put the file back.", code="no_file")
-        other, moved = self.misnamed(exercise), self.moved(exercise)
         given = {one.name for one in exercise.given}
         beside = [one.name for one in sorted(path.parent.glob("*.py")) if one.name not in given]
-        if len(beside) == 1:
-            other = other or beside[0]
+        other = self.unread(exercise) or (beside[0] if len(beside) == 1 else "")
         right = Path(exercise.module).with_suffix(Path(other).suffix).name
-        advice = f"`course start {exercise.id}` puts one there."
-        if other:
-            advice = f"There is {other} beside it: if that is yours, rename it to {right}."
-        if other.lower() == right.lower():
+        if "/" in other:
+            advice = f"There is {other}. The folder must be called {exercise.place}: rename it back."
+        elif other.lower() == right.lower():
             advice = f"Rename {other} to {right}: capitals count."
-        elif moved and not other:
-            advice = f"There is {moved}. The folder must be called {exercise.place}: rename it back."
+        elif other:
+            advice = f"There is {other} beside it: if that is yours, rename it to {right}."
+        else:
+            advice = f"`course start {exercise.id}` puts one there."
         return UngradableError(f"There is no file {shown}.", help=advice, code="no_file")
 
     def stub(self, exercise: Exercise) -> bytes:

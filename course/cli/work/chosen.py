@@ -154,14 +154,11 @@ def work_of(
             why_not = f"{exercise.module} was worked in too, and is handed in" if notebook else why_not
         elif notebook is not None:
             chosen.append(notebook)
-        else:
-            other = here.misnamed(exercise) or here.moved(exercise)
-            unread = f"; {other} is not read under that name" if other else ""
-            if there or exercise.id in here.workspace.started() or (other and not why_not):
-                why = (_STUB if there else "not there") + unread
-                left_out.append(FileReply(path=f"{exercise.place}/{exercise.module}", action=why))
-            elif why_not:
-                why_not += unread
+        elif (other := here.unread(exercise)) or there or exercise.id in here.workspace.started():
+            why = (_STUB if there else "not there") + (
+                f"; {other} is not read under that name" if other else ""
+            )
+            left_out.append(FileReply(path=f"{exercise.place}/{exercise.module}", action=why))
         if why_not:
             path = f"{exercise.place}/{_notebook_name(exercise)}"
             left_out.append(FileReply(path=path, action=why_not))
@@ -180,17 +177,14 @@ def _notebook_name(exercise: Exercise) -> str:
 
 def _module(here: Here, exercise: Exercise) -> StudentWork:
     source = here.source(exercise)
-    name = exercise.module
-    return StudentWork(
-        exercise, name, source, source, here.stub(exercise), notes=_unread(here, exercise, name)
-    )
+    notes = _unread(here, exercise, exercise.module)
+    return StudentWork(exercise, exercise.module, source, source, here.stub(exercise), notes=notes)
 
 
 def _unread(here: Here, exercise: Exercise, name: str) -> tuple[str, ...]:
-    """A note on the student's file that is not read because of its name, if there is one."""
-    other = here.misnamed(exercise)
-    why = " Capitals matter." if other.lower() == name.lower() else ""
-    said = f"{exercise.place}/{other} is not read: the file that counts is {name}.{why}"
+    """A note on work that is not read because of its file's name, if there is some."""
+    other = here.unread(exercise)
+    said = f"{exercise.place}/{other} is not read: the file that counts is {name}."
     return (said,) if other else ()
 
 

@@ -21,7 +21,7 @@ from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.figures.described import Curve, plot_of
 from course.handed_in.attempts import Attempt, attempt
-from course.handed_in.limits import MAX_FILE, SOURCES, read_notebook
+from course.handed_in.limits import SOURCES, must_fit, read_notebook
 from course.handed_in.notebook import (
     SETUP,
     CodeCell,
@@ -510,12 +510,7 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 
 
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
-    if len(text) > MAX_FILE:
-        raise UngradableError(
-            f"This is more than {MAX_FILE:,} bytes of code.",
-            help="Keep data out of it; the exercise needs none.",
-            code="too_large",
-        )
+    must_fit(len(text), "This code is")
     return Submission({exercise.module: text})
 
 

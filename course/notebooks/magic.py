@@ -33,31 +33,27 @@ def register(shell: Any) -> None:
     shell.course_runs = Runs(shell)
 
     def course_check(line: str, cell: str | None = None) -> CheckTable | None:
-        """Run the public checks: %course_check EXERCISE [FUNCTION]; with %% on the cell as a file."""
+        """Run the public checks, with %% on the cell as a file: %course_check EXERCISE [FUNCTION]"""
         words = line.split()
-        usage = "" if 1 <= len(words) <= 2 else "Write: %course_check EXERCISE [FUNCTION]"
+        fits = 1 <= len(words) <= 2
         if cell is None:
-            return _told(usage, lambda: check(*words, shell=shell))
-        return _told(usage, lambda: check_cell(f"{cell}\n", *words))
+            return _told(fits, course_check, lambda: check(*words, shell=shell))
+        return _told(fits, course_check, lambda: check_cell(f"{cell}\n", *words))
 
     def course_report(line: str) -> ReportPage | None:
         """Show what your functions do on public data: %course_report EXERCISE"""
         words = line.split()
-        usage = "" if len(words) == 1 else "Write: %course_report EXERCISE"
-        return _told(usage, lambda: report(shell, *words))
+        return _told(len(words) == 1, course_report, lambda: report(shell, *words))
 
     def course_hint(line: str) -> None:
         """The next hint, after a check that failed: %course_hint EXERCISE [FUNCTION]"""
         first, *rest = line.split() or [""]
         words = [first, *(f"--task={task}" for task in rest)]
-        _told(
-            "" if first and len(rest) < 2 else "Write: %course_hint EXERCISE [FUNCTION]",
-            partial(_run, "hint", *words),
-        )
+        _told(bool(first) and len(rest) < 2, course_hint, partial(_run, "hint", *words))
 
     def course_progress(line: str) -> None:
         """What you have done in this workspace: %course_progress"""
-        _told("" if not line else "Write: %course_progress", partial(_run, "progress"))
+        _told(not line, course_progress, partial(_run, "progress"))
 
     def course_submit(line: str) -> None:
         """Write the file to hand in: %course_submit [EXERCISE ...]"""
@@ -87,10 +83,11 @@ def _run(*words: str) -> None:
     print(said.rstrip("\n"))  # noqa: T201 - a cell's output is its screen
 
 
-def _told(wrong: str, act: Callable[[], T]) -> T | None:
-    """What was asked for; or None, with a sentence about what is wrong."""
+def _told(fits: bool, magic: Callable[..., object], act: Callable[[], T]) -> T | None:
+    """What was asked for; or None, with a sentence about what is wrong: where it does not fit, its usage."""
+    wrong = f"Write: {(magic.__doc__ or '').rpartition(': ')[2]}"
     try:
-        if not wrong:
+        if fits:
             return act()
     except CourseError as error:
         wrong = f"{error.message} {error.help}"

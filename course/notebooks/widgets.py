@@ -69,9 +69,6 @@ class Predict(Form):
 
     Args:
         asked: see ``predicting.LessonPrediction``; that module imports this one.
-
-    Raises:
-        RuntimeError: no event loop runs here, as one does in every kernel.
     """
 
     _esm = (_SCRIPTS / "predict.js").read_text("utf-8")
@@ -248,9 +245,6 @@ class QuizForm(Form):
 
     Args:
         taken: see ``predicting.OngoingAttempt``; that module imports this one.
-
-    Raises:
-        RuntimeError: no event loop runs here, as one does in every kernel.
     """
 
     _esm = (_SCRIPTS / "take.js").read_text("utf-8")

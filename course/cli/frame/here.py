@@ -19,7 +19,7 @@ from course.catalog.models import CourseRef, Exercise
 from course.cli.frame.console import current
 from course.cli.frame.replies import Backup, Envelope, WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
-from course.handed_in.limits import MAX_FILE
+from course.handed_in.limits import must_fit
 from course.ids import WARM_UPS
 from course.progress.history import History, Standing, history_of
 from course.progress.store import Event
@@ -159,10 +159,7 @@ class Here:
                 raise self._missing(exercise, path, shown)
             if not path.is_file():
                 raise UngradableError(f"{shown} is not a file.", help="Move it away.", code="no_file")
-            if path.stat().st_size > MAX_FILE:
-                problem = f"{shown} is larger than {MAX_FILE:,} bytes."
-                fix = "Keep data out of the file; the exercise needs none."
-                raise UngradableError(problem, help=fix, code="too_large")
+            must_fit(path.stat().st_size, f"{shown} is")
             return read_bytes(path)
         except OSError as error:
             problem = f"{shown} cannot be read ({error.strerror or error})."

@@ -19,7 +19,7 @@ from course.catalog.models import Exercise
 from course.cli.frame.here import Here, named
 from course.cli.frame.replies import FileReply
 from course.errors import CourseError, NotFoundError, UngradableError
-from course.handed_in.limits import MAX_FILE, read_notebook
+from course.handed_in.limits import MAX_FILE, must_fit, read_notebook
 from course.notebooks.cells import dumped
 from course.notebooks.merge import is_untouched
 from course.printable import command
@@ -127,7 +127,7 @@ def worked_on(here: Here) -> tuple[Exercise, ...]:
     """
     started, found = here.workspace.started(), []
     for one in here.catalog.exercises():
-        there = one.id in started or here.workspace.path(one.place, one.module).is_file()
+        there = one.id in started or here.workspace.path(one.place, one.module).is_file() or here.unread(one)
         if there or _handed_in_notebook(here, one)[0] is not None:
             found.append(one)
     return tuple(found)
@@ -206,10 +206,7 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
         raise UngradableError(problem, help=fix, code="no_file")
     data = read_notebook(path)
     module = notebook_source(data, exercise, name)
-    if len(module.source) > MAX_FILE:
-        problem = f"The functions of {name} are larger than {MAX_FILE:,} bytes."
-        fix = "Keep data out of them; the exercise needs none."
-        raise UngradableError(problem, help=fix, code="too_large")
+    must_fit(len(module.source), f"The code of {name} is")
     given = notebook_source(exercise_notebook(here.catalog, exercise), exercise)
     notes = _unread(here, exercise, name)
     return StudentWork(exercise, name, data, module.source, given.source, module, notes)

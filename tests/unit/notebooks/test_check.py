@@ -71,7 +71,7 @@ def test_an_interrupted_check_is_one_sentence(monkeypatch, capsys):
     def stopped():
         raise KeyboardInterrupt
 
-    assert magic._told("", stopped) is None
+    assert magic._told(True, stopped, stopped) is None
     assert capsys.readouterr().out == "Interrupted; nothing was recorded.\n"
 
 

@@ -307,7 +307,7 @@ class _Loop:
                 console.line(_LINK.sub(r"\1", " ".join(paragraph.split())))
             for each in task.task:
                 console.item(each.id, each.title, width=max(len(one.id) for one in task.task))
-            tell_length(console, task)
+            tell_length(console, self.here, task)
         console.note(f"Explained in: course lesson {task.where_to_read('')}")
 
     def _show(self, task: Exercise, watcher: Watcher, key: str) -> None:

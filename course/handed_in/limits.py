@@ -5,7 +5,7 @@ What a student is told at home and what a grading run refuses are read from here
 
 from pathlib import Path
 
-from course.errors import UsageError
+from course.errors import UngradableError, UsageError
 
 #: The suffixes of files with a student's functions, and of all that can be handed in.
 SOURCES = (".py", ".ipynb")
@@ -35,6 +35,13 @@ MAX_STREAMED = 100 << 20
 #: The member that says what an archive holds, and the version of its form.
 MANIFEST = "submission.json"
 FORMAT_VERSION = 1
+
+
+def must_fit(size: int, what: str) -> None:
+    """Refuse a module of more than ``MAX_FILE`` bytes."""
+    if size > MAX_FILE:
+        fix = "Keep data out of it; the exercise needs none."
+        raise UngradableError(f"{what} larger than {MAX_FILE:,} bytes.", help=fix, code="too_large")
 
 
 def read_notebook(path: Path) -> bytes:

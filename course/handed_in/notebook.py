@@ -101,7 +101,7 @@ def code_cells(data: bytes, name: str) -> list[CodeCell]:
         message = f"{name} is a notebook for {quoted(language)}, not for Python."
         raise UngradableError(message, help="Write the functions in a Python notebook.", code="other_kernel")
     cells = notebook.cells or [cell for sheet in notebook.worksheets for cell in sheet.cells]
-    codes = [(number, cell) for number, cell in enumerate(cells, 1) if cell.cell_type == "code"]
+    codes = [(n, cell) for n, cell in enumerate(cells, 1) if cell.cell_type == "code" or _was_code(cell)]
     _must_be_small([(number, len(_text(cell))) for number, cell in codes], name)
     return [_code_cell(number, cell) for number, cell in codes]
 
@@ -167,7 +167,18 @@ def _language(metadata: _Metadata | None) -> str:
     return "python" if any("python" in word for word in words) else (words[0] if words else "")
 
 
+def _was_code(cell: _Cell) -> bool:
+    """Whether it was made for a function, and is a text cell now: in Jupyter the key M is all it takes."""
+    tags = cell.metadata.get("course")
+    return isinstance(tags, dict) and tags.get("role") == SOLUTION
+
+
 def _code_cell(number: int, cell: _Cell) -> CodeCell:
+    if cell.cell_type != "code":
+        left_out = ((1, "it is a text cell, and the key Y makes it one of code"),)
+        return CodeCell(
+            number, "", statements.tree(""), cell.metadata["course"], left_out, _text(cell), cell.id
+        )
     text, dropped = _without_magics(_text(cell).replace("\r\n", "\n").replace("\r", "\n"))
     text, more = statements.without_shell(text)
     tags = cell.metadata.get("course")
@@ -459,6 +470,7 @@ def _notes(
         for cell in cells
         if cell.tags.get("role") in (None, SOLUTION, SETUP)
         for line, text in cell.dropped
+        if not text.startswith("%course_")  # a check or a hint that was asked for
     ]
     notes = [
         f"{where[:1].upper()}{where[1:]}, line {line}: left out, since it is not Python: {one_line(text, 80)}"

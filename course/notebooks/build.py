@@ -251,7 +251,8 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
     first, above, last = _placed(_sections(readme), list(tasks))
     cells = [opening(first), *map(markdown, above.pop("", ()))]
     file = exercise.stub_path.with_suffix(".ipynb").name
-    cells.append(markdown(f"{_HOW.format(file=file, exercise=exercise.id)}\n\n{about}"))
+    here = about.replace("README.md", "This notebook")
+    cells.append(markdown(f"{_HOW.format(file=file, exercise=exercise.id)}\n\n{here}"))
     cells.append(code(_LOAD, role="tools", exercise=exercise.id))
     for part in parts:
         if not part.task:
@@ -279,7 +280,8 @@ def _in_notebook(exercise: Exercise) -> str:
     readme = exercise.readme_path.read_text(encoding="utf-8")
     own = rf"from {re.escape(exercise.stub_path.stem)} import .*\n"
     imports = re.compile(rf"(?<=```python\n){own}\n?|^{own}", re.MULTILINE)
-    return imports.sub("", readme).replace(f"`{exercise.module}`", "this notebook")
+    readme = imports.sub("", readme).replace(f"`{exercise.module}`", "this notebook")
+    return readme.replace(f"`course check {exercise.id}`", f"`%course_check {exercise.id}`")
 
 
 def _as_command(link: re.Match[str]) -> str:

@@ -21,7 +21,7 @@ from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.figures.described import Curve, plot_of
 from course.handed_in.attempts import Attempt, attempt
-from course.handed_in.limits import MAX_FILE, SOURCES, read_notebook
+from course.handed_in.limits import SOURCES, must_fit, read_notebook
 from course.handed_in.notebook import (
     SETUP,
     CodeCell,
@@ -31,11 +31,12 @@ from course.handed_in.notebook import (
     source_of,
     typed_cell,
 )
+from course.isolation.inside import statements
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage, image_of
 from course.printable import counted, some
 from course.progress.history import fingerprint
-from course.progress.workspace import Recorder, not_recorded
+from course.progress.workspace import Recorder, Workspace, not_recorded
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
 from course.strangers import read_bytes
@@ -103,7 +104,8 @@ class CheckTable:
         of = f" of {self.task}" if self.task else ""
         score = f": {format_points(points)} of {in_points(most)}" if self.scored else ""
         if len(self.checks) == 1:
-            return f"The one public check{of} {'passes' if self.passed else 'fails'}{score}."
+            verb = "is to do" if self.checks[0].unwritten else "passes" if self.passed else "fails"
+            return f"The one public check{of} {verb}{score}."
         if self.passed:
             return f"All {len(self.checks)} public checks{of} pass{score}."
         pass_ = "passes" if passing == 1 else "pass"
@@ -113,28 +115,35 @@ class CheckTable:
         lines = _first_lines(self.printed)
         curve = self._curve.description if self._curve else ""
         report = repr(self.report) if self.report else ""
-        notes = *self._to_write, *self.verdict.warnings, self.note
-        below = [text for text in (curve, *notes, report) if text]
+        below = [text for text in (curve, *self._notes, report) if text]
         for check in self.checks:
             mark, state = _state(check)
-            lines.append(f"{mark} {check.title}: {state}")
+            lines.append(f"{mark} {check.title}{f' [{check.task}]' if self._of_several else ''}: {state}")
             lines += [f"    {text}" for text in _words(check)]
         return "\n".join([*lines, self.summary, *below])
 
     def _repr_html_(self) -> str:
-        rows = "".join(_row(check, scored=self.scored) for check in self.checks)
+        rows = "".join(_row(check, scored=self.scored, named=self._of_several) for check in self.checks)
         table = f'<table class="course-checks">{rows}</table>' if rows else ""
-        notes = [note for note in (*self._to_write, *self.verdict.warnings, self.note) if note]
-        note = "".join(f"<p>{_coded(text)}</p>" for text in notes)
+        note = "".join(f"<p>{_coded(text)}</p>" for text in self._notes)
         lines = "\n".join(_first_lines(self.printed))
         printed = f"<pre>{escape(lines)}</pre>" if lines else ""
         report = self.report._repr_html_() if self.report is not None else ""
         return f"{_STYLE}{printed}{table}<p><b>{escape(self.summary)}</b></p>{self._drawn()}{note}{report}"
 
     @property
-    def _to_write(self) -> Iterable[str]:
-        """What to do about functions that are not written yet, once each."""
-        return dict.fromkeys(check.help for check in self.checks if check.unwritten)
+    def _of_several(self) -> bool:
+        """Whether there are checks of more than one function: a title alone may not say of which."""
+        return len({check.task for check in self.checks}) > 1
+
+    @property
+    def _notes(self) -> Iterable[str]:
+        """What to do about functions that are not written yet, once each, and all else there is to say."""
+        failed = [check for check in self.checks if check.status != "pass" and not check.unwritten]
+        if self.scored and not all(check.max_points for check in failed):
+            yield "What fails without points costs none here; the grading run judges it."
+        yield from dict.fromkeys(check.help for check in self.checks if check.unwritten)
+        yield from filter(None, (*self.verdict.warnings, self.note))
 
     def _drawn(self) -> str:
         """The first curve, and where it leaves the right one."""
@@ -151,7 +160,8 @@ def _state(check: CheckResult) -> tuple[str, str]:
     return ("–", "to do") if check.unwritten else (_MARKS.get(check.status, "✗"), str(check.status))
 
 
-def _row(check: CheckResult, *, scored: bool) -> str:
+def _row(check: CheckResult, *, scored: bool, named: bool) -> str:
+    of = f" <code>{check.task}</code>" if named else ""
     mark, state = _state(check)
     words = "".join(
         f"<br>{_coded(text)}" if index < 2 else f"<br><small>{escape(text)}</small>"
@@ -159,7 +169,7 @@ def _row(check: CheckResult, *, scored: bool) -> str:
     )
     reached = f"{format_points(check.points)}/{format_points(check.max_points)}" if check.max_points else ""
     points = f"<td>{reached}</td>" if scored else ""
-    return f"<tr><td>{mark} {escape(state)}</td><td><b>{escape(check.title)}</b>{words}</td>{points}</tr>"
+    return f"<tr><td>{mark} {escape(state)}</td><td><b>{escape(check.title)}</b>{of}{words}</td>{points}</tr>"
 
 
 def _coded(text: str) -> str:
@@ -192,7 +202,8 @@ def _first_lines(text: str) -> list[str]:
 # the file is not known, the cells that were run are all there is.
 
 
-_DEF = re.compile(r"^(?:async\s+)?def\s+(\w+)|^class\s+(\w+)", re.MULTILINE)
+#: What a note on cells that were run and not saved begins with, after the notebook's name.
+NOT_SAVED = "is not saved as you ran it"
 #: Cells that are not in the file get numbers from here on.
 _UNSAVED = 1_000_000
 #: Cells that a note names.
@@ -262,8 +273,26 @@ def at_hand(shell: Any, exercise: Exercise) -> NotebookSource:
             saved, at = code_cells(read_notebook(path), path.name), path.stat().st_mtime
             deleted = {cell for cell, when in seen.deleted.items() if when > at} if seen else set()
             kept = [cell for cell in saved if cell.id not in deleted or not cell.id]
-            return _as_saved_now(kept, at, runs, exercise, path.name)
+            module = _as_saved_now(kept, at, runs, exercise, path.name)
+            return replace(module, notes=(*module.notes, *_not_handed_in(path, exercise)))
     return module_of([run.text for run in runs], exercise)
+
+
+def _not_handed_in(path: Path, exercise: Exercise) -> Iterable[str]:
+    """A sentence if `course submit` in this workspace takes another file than a notebook."""
+    with contextlib.suppress(CourseError, OSError):
+        workspace = Workspace.find(Path.cwd())
+        module = workspace.path(exercise.place, exercise.module)
+        own = module.with_suffix(".ipynb")
+        if exercise.is_warm_up:
+            return
+        if not own.exists() or not own.samefile(path):
+            yield (
+                f"{path.name} is not what is handed in: that is {workspace.shown(own)}. Give this notebook"
+                " that name, or copy your cells there."
+            )
+        elif module.is_file() and workspace.is_edited(exercise.place, module.name, module.read_bytes()):
+            yield f"{module.name} was worked in too: that is what is handed in, and not {path.name}."
 
 
 def _file_of(shell: Any, exercise: Exercise, runs: Sequence[Run]) -> Path | None:
@@ -294,7 +323,7 @@ def _as_saved_now(
     last, new = _placed(saved, at, runs)
     cells: list[CodeCell] = []
     called: dict[int, str] = {}
-    unsaved: list[str] = []
+    unsaved: list[int] = []
     changed: list[str] = []
     for index, cell in enumerate(saved):
         run = last.get(index)
@@ -302,7 +331,7 @@ def _as_saved_now(
             called[cell.number] = f"In [{run.number}]"
         elif run is not None and run.at > at:
             called[cell.number] = f"In [{run.number}]"
-            unsaved.append(called[cell.number])
+            unsaved.append(run.number)
             cells.append(replace(typed_cell(cell.number, run.text), tags=cell.tags))
             continue
         elif run is not None and _names(cell):
@@ -311,15 +340,17 @@ def _as_saved_now(
     for run in new:
         number = _UNSAVED + run.number
         called[number] = f"In [{run.number}]"
-        unsaved.append(called[number])
         cells.append(typed_cell(number, run.text))
+        if cells[-1].text.replace("pass", "").strip():  # not a magic alone
+            unsaved.append(run.number)
     module = source_of(cells, exercise, name, called)
     notes = list(module.notes)
+    with contextlib.suppress(UngradableError):
+        if fingerprint(source_of(saved, exercise, name).source) == fingerprint(module.source):
+            unsaved = []  # none that counts
     if unsaved:
-        notes.append(
-            f"{name} is not saved as you ran it: {some(unsaved, _NAMED)}. This check took what you ran. What"
-            " is handed in is the file, so save it."
-        )
+        listed = some([f"In [{number}]" for number in sorted(unsaved)], _NAMED)
+        notes.append(f"{name} {NOT_SAVED}: {listed}. Only what is saved is handed in: save it.")
     if changed:
         notes.append(
             f"Changed since you ran it: {some(changed, _NAMED)}. This check took it as it is in the file now."
@@ -391,17 +422,13 @@ def defines_all(source: bytes, names: Sequence[str]) -> bool:
     tree = typed_cell(1, source.decode()).tree
     if tree is None:
         return True
-    assigned = {
-        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
-    }
-    defined = {node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
-    return set(names) <= defined | assigned
+    return set(names) <= {name for node in tree.body for name in statements.bound(node)}
 
 
 def _names(cell: CodeCell) -> set[str]:
     """The functions and classes that a cell defines, or would define if its syntax were right."""
     if cell.tree is None:
-        return {first or second for first, second in _DEF.findall(cell.text)}
+        return set(statements.defined_in(cell.text))
     return {
         node.name
         for node in cell.tree.body
@@ -483,12 +510,7 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 
 
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
-    if len(text) > MAX_FILE:
-        raise UngradableError(
-            f"This is more than {MAX_FILE:,} bytes of code.",
-            help="Keep data out of it; the exercise needs none.",
-            code="too_large",
-        )
+    must_fit(len(text), "This code is")
     return Submission({exercise.module: text})
 
 

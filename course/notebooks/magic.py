@@ -7,6 +7,7 @@ a workspace the attempt is recorded as `course check` records it.
 """
 
 import ast
+import contextlib
 import os
 import re
 import subprocess
@@ -20,7 +21,7 @@ from course.catalog.models import Exercise
 from course.errors import CourseError
 from course.handed_in.notebook import SOLUTION
 from course.notebooks.cells import Cell, document
-from course.notebooks.checking import CheckTable, Runs, at_hand, check
+from course.notebooks.checking import NOT_SAVED, CheckTable, Runs, at_hand, check
 from course.notebooks.show import ReportPage
 from course.scoring.judging.session import check_files, has_report, report_of
 from course.scoring.judging.submission import Submission
@@ -32,39 +33,43 @@ def register(shell: Any) -> None:
     shell.course_runs = Runs(shell)
 
     def course_check(line: str, cell: str | None = None) -> CheckTable | None:
-        """Run the public checks: %course_check EXERCISE [FUNCTION]; with %% on the cell as a file."""
+        """Run the public checks, with %% on the cell as a file: %course_check EXERCISE [FUNCTION]"""
         words = line.split()
-        usage = "" if 1 <= len(words) <= 2 else "Write: %course_check EXERCISE [FUNCTION]"
+        fits = 1 <= len(words) <= 2
         if cell is None:
-            return _told(usage, lambda: check(*words, shell=shell))
-        return _told(usage, lambda: check_cell(f"{cell}\n", *words))
+            return _told(fits, course_check, lambda: check(*words, shell=shell))
+        return _told(fits, course_check, lambda: check_cell(f"{cell}\n", *words))
 
     def course_report(line: str) -> ReportPage | None:
         """Show what your functions do on public data: %course_report EXERCISE"""
         words = line.split()
-        usage = "" if len(words) == 1 else "Write: %course_report EXERCISE"
-        return _told(usage, lambda: report(shell, *words))
+        return _told(len(words) == 1, course_report, lambda: report(shell, *words))
 
     def course_hint(line: str) -> None:
         """The next hint, after a check that failed: %course_hint EXERCISE [FUNCTION]"""
         first, *rest = line.split() or [""]
         words = [first, *(f"--task={task}" for task in rest)]
-        _told(
-            "" if first and len(rest) < 2 else "Write: %course_hint EXERCISE [FUNCTION]",
-            partial(_run, "hint", *words),
-        )
+        _told(bool(first) and len(rest) < 2, course_hint, partial(_run, "hint", *words))
 
     def course_progress(line: str) -> None:
         """What you have done in this workspace: %course_progress"""
-        _told("" if not line else "Write: %course_progress", partial(_run, "progress"))
+        _told(not line, course_progress, partial(_run, "progress"))
 
     def course_submit(line: str) -> None:
         """Write the file to hand in: %course_submit [EXERCISE ...]"""
         _run("submit", *line.split())
+        for exercise in Catalog().exercises():
+            with contextlib.suppress(CourseError):  # this notebook is not about it
+                notes = at_hand(shell, exercise).notes
+                print(*(f"{note}\n" for note in notes if NOT_SAVED in note), sep="", end="")  # noqa: T201
 
     shell.register_magic_function(course_check, "line_cell", "course_check")
     for magic in (course_report, course_hint, course_progress, course_submit):
         shell.register_magic_function(magic, "line", magic.__name__)
+
+
+#: A command of which there is a magic, about an exercise.
+_COMMAND = re.compile(r"\bcourse (check|hint|progress|submit)(?= [a-z][\w-]*(?![\w./-]))")
 
 
 def _run(*words: str) -> None:
@@ -74,13 +79,15 @@ def _run(*words: str) -> None:
         capture_output=True, encoding="utf-8", errors="replace", check=False,
         env={**os.environ, "PYTHONIOENCODING": "utf-8", "NO_COLOR": "1"},
     )  # fmt: skip
-    print((done.stdout + done.stderr).rstrip("\n"))  # noqa: T201 - a cell's output is its screen
+    said = _COMMAND.sub(r"%course_\1", done.stdout + done.stderr)
+    print(said.rstrip("\n"))  # noqa: T201 - a cell's output is its screen
 
 
-def _told(wrong: str, act: Callable[[], T]) -> T | None:
-    """What was asked for; or None, with a sentence about what is wrong."""
+def _told(fits: bool, magic: Callable[..., object], act: Callable[[], T]) -> T | None:
+    """What was asked for; or None, with a sentence about what is wrong: where it does not fit, its usage."""
+    wrong = f"Write: {(magic.__doc__ or '').rpartition(': ')[2]}"
     try:
-        if not wrong:
+        if fits:
             return act()
     except CourseError as error:
         wrong = f"{error.message} {error.help}"

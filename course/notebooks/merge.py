@@ -8,6 +8,7 @@ is not safe, nothing is merged, and the reason is given.
 """
 
 import ast
+import contextlib
 import json
 from dataclasses import dataclass
 from typing import Any
@@ -31,6 +32,15 @@ def is_untouched(data: bytes) -> bool:
         return False
     slots = [cell.slot for cell in cells]
     return all(slots) and len(set(slots)) == len(slots) and not any(cell.edited for cell in cells)
+
+
+def worked_in(data: bytes, exercise: str) -> bool:
+    """Whether a notebook was generated for an exercise, whatever its file is called, and was edited since."""
+    with contextlib.suppress(CannotMergeError):
+        match _read(data)["metadata"].get("course"):
+            case {"kind": "exercise", "id": name}:
+                return bool(name == exercise) and not is_untouched(data)
+    return False
 
 
 def merged(old: bytes, new: bytes) -> bytes:

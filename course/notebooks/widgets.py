@@ -69,12 +69,11 @@ class Predict(Form):
 
     Args:
         asked: see ``predicting.LessonPrediction``; that module imports this one.
-
-    Raises:
-        RuntimeError: no event loop runs here, as one does in every kernel.
     """
 
     _esm = (_SCRIPTS / "predict.js").read_text("utf-8")
+    # JupyterLab's own grey is too pale on its dark theme.
+    _css = ".course-prediction::placeholder { color: inherit; opacity: 0.8; }"
 
     def __init__(self, asked: Any) -> None:
         super().__init__()
@@ -246,9 +245,6 @@ class QuizForm(Form):
 
     Args:
         taken: see ``predicting.OngoingAttempt``; that module imports this one.
-
-    Raises:
-        RuntimeError: no event loop runs here, as one does in every kernel.
     """
 
     _esm = (_SCRIPTS / "take.js").read_text("utf-8")

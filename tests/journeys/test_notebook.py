@@ -231,10 +231,40 @@ def test_what_is_not_saved_or_not_run_is_said(kernel):
     said = kernel.run(OLD, cell["id"]) + kernel.run(CHECK)
     assert "40 of 40 points" not in said
     assert "integrators.ipynb is not saved as you ran it: In [" in said
+    said = kernel.run("%course_submit integrators", "hand-in")
+    assert "40/40 points" in said  # of the file
+    assert "is not saved as you ran it" in said
     edit(kernel.path, lambda cells: of_task(cells, "rk4_step").update(source=OLD + "  # saved, not run"))
     said = kernel.run(CHECK)
     assert "Changed since you ran it: In [" in said
     assert "40 of 40 points" not in said
+
+
+@with_kernel
+def test_hints_and_other_cells_without_code_are_nothing_to_save(kernel):
+    kernel.run_all()
+    time.sleep(0.05)
+    said = kernel.run("%course_hint integrators rk4_step", "hint") + kernel.run("1 + 1", "sum")
+    assert "Next: %course_check integrators" in said
+    said = kernel.run(CHECK)
+    assert "40 of 40 points" in said
+    assert "not saved" not in said
+    assert "left out" not in said
+
+
+@with_kernel
+def test_a_check_in_a_notebook_that_is_not_handed_in_says_so(kernel):
+    kernel.run_all()
+    module = kernel.path.with_suffix(".py")
+    module.write_text("x = 1\n")
+    assert "integrators.py was worked in too: that is what is handed in" in kernel.run(CHECK)
+    module.unlink()
+    copy = kernel.path.with_name("integrators-Copy1.ipynb")
+    copy.write_bytes(kernel.path.read_bytes())
+    with contextlib.closing(Kernel(copy, {})) as other:
+        other.run("%load_ext course.notebooks")
+        said = other.run(CHECK)
+    assert "integrators-Copy1.ipynb is not what is handed in: that is integrators/integrators.ipynb" in said
 
 
 @with_kernel

@@ -19,7 +19,7 @@ from course.catalog.models import CourseRef, Exercise
 from course.cli.frame.console import current
 from course.cli.frame.replies import Backup, Envelope, WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
-from course.handed_in.limits import MAX_FILE
+from course.handed_in.limits import must_fit
 from course.ids import WARM_UPS
 from course.progress.history import History, Standing, history_of
 from course.progress.store import Event
@@ -108,20 +108,37 @@ class Here:
     def _every(self) -> tuple[Exercise, ...]:
         return *self.catalog.exercises(), *self.catalog.warm_ups()
 
-    def misnamed(self, exercise: Exercise) -> str:
-        """A file beside the student's whose name differs in capitals only; "" if there is none."""
+    def unread(self, exercise: Exercise) -> str:
+        """A file that is not read because of its name though it holds work; "" if there is none.
+
+        The module with other capitals; the notebook under any other name, edited last of all that hold work;
+        or either in a folder of another name.
+        """
+        from course.notebooks.merge import worked_in
+
         own = self.workspace.path(exercise.place, exercise.module)
+        if not own.parent.exists():
+            return self._moved(exercise)
+        notebook = own.with_suffix(".ipynb")
         with suppress(OSError):
-            others = [path for path in sorted(own.parent.iterdir()) if path.name != own.name]
+            others = [path for path in sorted(own.parent.iterdir()) if path not in (own, notebook)]
             alike = [path for path in others if path.name.lower() == own.name.lower()]
             # Where capitals do not count, as on Windows and macOS, it is the student's file itself.
-            return next((path.name for path in alike if not (own.exists() and path.samefile(own))), "")
+            if found := next((path.name for path in alike if not (own.exists() and path.samefile(own))), ""):
+                return found
+            edited: dict[bytes, tuple[float, str]] = {}  # by content: an exact copy is nothing to speak of
+            copies = [path for path in others if path.suffix == notebook.suffix]
+            for path in filter(Path.is_file, (*copies, notebook, own) if copies else ()):
+                data = path.read_bytes()
+                own_work = path == own and self.workspace.is_edited(exercise.place, own.name, data)
+                if own_work or worked_in(data, exercise.id):
+                    edited[data] = path.stat().st_mtime, path.name
+            last = max(edited.values(), default=(0.0, own.name))[1]
+            return "" if last in (own.name, notebook.name) else last
         return ""
 
-    def moved(self, exercise: Exercise) -> str:
+    def _moved(self, exercise: Exercise) -> str:
         """The exercise's file, or its notebook, in a folder of another name; "" if there is none."""
-        if self.workspace.path(exercise.place, exercise.module).parent.exists():
-            return ""
         names = exercise.module, Path(exercise.module).with_suffix(".ipynb").name
         with suppress(OSError):
             folders = [path for path in sorted(self.workspace.root.iterdir()) if path.is_dir()]
@@ -142,10 +159,7 @@ class Here:
                 raise self._missing(exercise, path, shown)
             if not path.is_file():
                 raise UngradableError(f"{shown} is not a file.", help="Move it away.", code="no_file")
-            if path.stat().st_size > MAX_FILE:
-                problem = f"{shown} is larger than {MAX_FILE:,} bytes."
-                fix = "Keep data out of the file; the exercise needs none."
-                raise UngradableError(problem, help=fix, code="too_large")
+            must_fit(path.stat().st_size, f"{shown} is")
             return read_bytes(path)
         except OSError as error:
             problem = f"{shown} cannot be read ({error.strerror or error})."
@@ -155,15 +169,18 @@ class Here:
         if path.is_symlink():
             said = f"{shown} is a link to {path.readlink()}, and no file is there."
             return UngradableError(said, help="Remove the link, or put the file back.", code="no_file")
-        other, moved = self.misnamed(exercise), self.moved(exercise)
-        advice = f"Rename {other} to {exercise.module}: capitals count." if other else ""
-        if moved and not other:
-            advice = f"There is {moved}. The folder must be called {exercise.place}: rename it back."
         given = {one.name for one in exercise.given}
         beside = [one.name for one in sorted(path.parent.glob("*.py")) if one.name not in given]
-        if len(beside) == 1 and not advice:
-            advice = f"There is {beside[0]} beside it: if that is yours, rename it to {exercise.module}."
-        advice = advice or f"`course start {exercise.id}` puts one there."
+        other = self.unread(exercise) or (beside[0] if len(beside) == 1 else "")
+        right = Path(exercise.module).with_suffix(Path(other).suffix).name
+        if "/" in other:
+            advice = f"There is {other}. The folder must be called {exercise.place}: rename it back."
+        elif other.lower() == right.lower():
+            advice = f"Rename {other} to {right}: capitals count."
+        elif other:
+            advice = f"There is {other} beside it: if that is yours, rename it to {right}."
+        else:
+            advice = f"`course start {exercise.id}` puts one there."
         return UngradableError(f"There is no file {shown}.", help=advice, code="no_file")
 
     def stub(self, exercise: Exercise) -> bytes:

@@ -15,7 +15,7 @@ from course.cli.frame.here import Here, write
 from course.cli.frame.options import ExerciseName, OneExercise, argument, exercise_ids, option
 from course.cli.frame.replies import Backup, FileReply, NextStep
 from course.cli.work.checking import report_source_file
-from course.cli.work.chosen import asked_for, chosen_work
+from course.cli.work.chosen import asked_for, chosen_work, name_of_work
 from course.cli.work.replies import Change, Diff, Reset, Start, Update
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.handed_in.limits import read_notebook
@@ -64,8 +64,12 @@ def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not
     """
     console, here = current(), Here.load()
     chosen = here.exercise(exercise)
-    path = here.workspace.path(chosen.place, chosen.module)
+    path = here.workspace.path(chosen.place, name_of_work(here, chosen))
     stub = chosen.stub_path.read_bytes()
+    if path.name != chosen.module:
+        from course.notebooks.build import exercise_notebook
+
+        stub = exercise_notebook(here.catalog, chosen)
     shown = here.workspace.shown(path)
     step = f"course check {chosen.id}"
     there = path.is_file()
@@ -86,7 +90,8 @@ def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not
         console.line(f"Your version is kept at {here.workspace.shown(copy)}.")
         backups.append(Backup(path=str(path), backup=str(copy)))
     write_atomically(path, stub)
-    here.workspace.remember(chosen.place, chosen.module, stub)
+    if path.name == chosen.module:
+        here.workspace.remember(chosen.place, chosen.module, stub)
     here.record("reset", chosen.id, {"backups": [item.backup for item in backups]})
     console.line(f"{shown} is the stub again.")
     return here.answer(Reset(exercise=chosen.id, changed=True, backups=tuple(backups), next=NextStep(step)))
@@ -212,16 +217,17 @@ def start(
     chosen = here.exercise(exercise)
     files = put(console, here, chosen)
     step = f"course watch {chosen.id}"
-    tell_length(console, chosen)
+    tell_length(console, here, chosen)
     console.note(f"Then check it on every save: {step}")
     console.note(f"Or once, now and then: course check {chosen.id}")
     return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))
 
 
-def tell_length(console: Console, chosen: Exercise) -> None:
+def tell_length(console: Console, here: Here, chosen: Exercise) -> None:
     """Where an exercise is to be read and to be written, and how long reading takes."""
     minutes = max(1, round(len(chosen.readme_path.read_text(encoding="utf-8").split()) / _WORDS_A_MINUTE))
-    console.note(f"Read {chosen.place}/README.md, write your code in {chosen.place}/{chosen.module}.")
+    work = f"{chosen.place}/{name_of_work(here, chosen)}"
+    console.note(f"Read {chosen.place}/README.md, write your code in {work}.")
     if minutes > _LONG:
         console.note(f"It takes {minutes} minutes to read; you can begin after the first function's section.")
 

@@ -19,7 +19,7 @@ from course.catalog.models import Exercise
 from course.cli.frame.here import Here, named
 from course.cli.frame.replies import FileReply
 from course.errors import CourseError, NotFoundError, UngradableError
-from course.handed_in.limits import MAX_FILE, read_notebook
+from course.handed_in.limits import MAX_FILE, must_fit, read_notebook
 from course.notebooks.cells import dumped
 from course.notebooks.merge import is_untouched
 from course.printable import command
@@ -110,6 +110,17 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Stu
     return _beside_notebook(here, module)
 
 
+def name_of_work(here: Here, exercise: Exercise) -> str:
+    """The name of the file that counts; the module's where neither can be read."""
+    notebook = _notebook_name(exercise)
+    with suppress(OSError, CourseError):
+        paths = [here.workspace.path(exercise.place, name) for name in (exercise.module, notebook)]
+        if paths[1].is_file() and not paths[0].exists():
+            return notebook
+        return chosen_work(here, exercise).name
+    return exercise.module
+
+
 def worked_on(here: Here) -> tuple[Exercise, ...]:
     """The exercises that were started, that have a file, or whose notebook was edited.
 
@@ -117,7 +128,7 @@ def worked_on(here: Here) -> tuple[Exercise, ...]:
     """
     started, found = here.workspace.started(), []
     for one in here.catalog.exercises():
-        there = one.id in started or here.workspace.path(one.place, one.module).is_file()
+        there = one.id in started or here.workspace.path(one.place, one.module).is_file() or here.unread(one)
         if there or _handed_in_notebook(here, one)[0] is not None:
             found.append(one)
     return tuple(found)
@@ -144,9 +155,10 @@ def work_of(
             why_not = f"{exercise.module} was worked in too, and is handed in" if notebook else why_not
         elif notebook is not None:
             chosen.append(notebook)
-        elif there or exercise.id in here.workspace.started() or here.moved(exercise):
-            other = here.misnamed(exercise) or here.moved(exercise)
-            why = (_STUB if there else "not there") + (f"; {other} is not read" if other else "")
+        elif (other := here.unread(exercise)) or there or exercise.id in here.workspace.started():
+            why = (_STUB if there else "not there") + (
+                f"; {other} is not read under that name" if other else ""
+            )
             left_out.append(FileReply(path=f"{exercise.place}/{exercise.module}", action=why))
         if why_not:
             path = f"{exercise.place}/{_notebook_name(exercise)}"
@@ -166,10 +178,15 @@ def _notebook_name(exercise: Exercise) -> str:
 
 def _module(here: Here, exercise: Exercise) -> StudentWork:
     source = here.source(exercise)
-    name, other = exercise.module, here.misnamed(exercise)
-    note = f"{exercise.place}/{other} is not read: the file that counts is {name}. Capitals matter."
-    notes = (note,) if other else ()
-    return StudentWork(exercise, name, source, source, here.stub(exercise), notes=notes)
+    notes = _unread(here, exercise, exercise.module)
+    return StudentWork(exercise, exercise.module, source, source, here.stub(exercise), notes=notes)
+
+
+def _unread(here: Here, exercise: Exercise, name: str) -> tuple[str, ...]:
+    """A note on work that is not read because of its file's name, if there is some."""
+    other = here.unread(exercise)
+    said = f"{exercise.place}/{other} is not read: the file that counts is {name}."
+    return (said,) if other else ()
 
 
 def _notebook(here: Here, exercise: Exercise) -> StudentWork:
@@ -190,12 +207,10 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
         raise UngradableError(problem, help=fix, code="no_file")
     data = read_notebook(path)
     module = notebook_source(data, exercise, name)
-    if len(module.source) > MAX_FILE:
-        problem = f"The functions of {name} are larger than {MAX_FILE:,} bytes."
-        fix = "Keep data out of them; the exercise needs none."
-        raise UngradableError(problem, help=fix, code="too_large")
+    must_fit(len(module.source), f"The code of {name} is")
     given = notebook_source(exercise_notebook(here.catalog, exercise), exercise)
-    return StudentWork(exercise, name, data, module.source, given.source, module)
+    notes = _unread(here, exercise, name)
+    return StudentWork(exercise, name, data, module.source, given.source, module, notes)
 
 
 def is_edited(work: StudentWork) -> bool:

@@ -10,6 +10,7 @@ export default {
     field.rows = 3;
     field.style.cssText = "display: block; width: 100%; box-sizing: border-box; font: inherit; padding: 0.4em";
     field.setAttribute("aria-label", "Your prediction");
+    field.className = "course-prediction";
     field.placeholder = "What do you expect, and why? You learn most from a guess that you wrote down.";
     const say = (text) => model.send({ kind: "predict", text });
     const button = (words, act) => {

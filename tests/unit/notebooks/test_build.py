@@ -239,4 +239,6 @@ def test_the_readme_of_an_exercise_stands_beside_it(integrators, everything):
     one = made(everything, "exercise", "integrators")
     whole = "\n".join(text(cell) for cell in cells(one.data, "markdown"))
     for line in integrators.readme_path.read_text(encoding="utf-8").split("\n"):
-        assert line.replace("`integrators.py`", "this notebook") in whole or "import" in line
+        here = line.replace("`integrators.py`", "this notebook").replace("`course check", "`%course_check")
+        assert here in whole or "import" in line
+    assert "README" not in whole

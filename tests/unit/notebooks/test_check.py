@@ -3,8 +3,9 @@
 import json
 import sys
 from pathlib import Path
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 
+import msgspec
 import pytest
 
 from course.catalog.load import Catalog
@@ -16,6 +17,7 @@ from course.notebooks.build import exercise_notebook
 from course.notebooks.checking import module_of
 from course.progress.history import fingerprint
 from course.progress.workspace import Workspace
+from course.scoring.verdict import Status
 
 pytestmark = pytest.mark.usefixtures("sandboxes")
 
@@ -69,7 +71,7 @@ def test_an_interrupted_check_is_one_sentence(monkeypatch, capsys):
     def stopped():
         raise KeyboardInterrupt
 
-    assert magic._told("", stopped) is None
+    assert magic._told(True, stopped, stopped) is None
     assert capsys.readouterr().out == "Interrupted; nothing was recorded.\n"
 
 
@@ -94,8 +96,33 @@ def test_a_function_checked_before_the_others_were_run_is_an_attempt_at_it_alone
     assert attempt["only"] == "double"
     assert (attempt["score"], attempt["max_score"], attempt["passed"]) == (2.0, 2.0, True)
     assert [check["task"] for check in attempt["checks"]] == ["double"]
+    to_do = check_in([DOUBLE.partition("return")[0] + "raise NotImplementedError"], "double")
+    assert to_do.summary == "The one public check of double is to do: 0 of 2 points."
     wrong = check_in([DOUBLE.replace("x + x", "x + x + x")], "double")
     assert wrong.summary == "The one public check of double fails: 0 of 2 points."
+
+
+def test_a_table_of_several_functions_names_them_and_says_what_costs_nothing(here):
+    table = check_in([DOUBLE, DOUBLINGS])
+    assert "double_of_three" not in repr(table)
+    assert all(f"[{task}]: pass" in repr(table) for task in ("double", "doublings"))
+    assert "<code>doublings</code>" in table._repr_html_()
+    assert "costs none here" not in repr(table)
+    first, *others = table.verdict.checks
+    failed = msgspec.structs.replace(first, status=Status.FAIL, points=0.0, max_points=0.0)
+    table.verdict = msgspec.structs.replace(table.verdict, checks=(failed, *others))
+    assert "What fails without points costs none here; the grading run judges it." in repr(table)
+
+
+def test_a_function_whose_cell_became_a_text_cell_is_told(here):
+    """The key M does it, in Jupyter's command mode."""
+    exercise = Catalog().exercise("doubling")
+    notebook = json.loads(exercise_notebook(Catalog(), exercise))
+    for cell in notebook["cells"]:
+        if cell["metadata"]["course"].get("task") == "double" and "def" in "".join(cell["source"]):
+            cell["cell_type"] = "markdown"
+    (note,) = notebook_source(json.dumps(notebook).encode(), exercise).notes
+    assert note.endswith("it is a text cell, and the key Y makes it one of code")
 
 
 def test_code_that_cannot_be_run_is_recorded_as_that(here):
@@ -253,6 +280,8 @@ def test_hints_progress_and_handing_in_need_no_terminal(here, capsys):
 
     class Registered:
         events = SimpleNamespace(register=lambda *_: None)
+        user_ns = MappingProxyType({})
+        history_manager = SimpleNamespace(input_hist_raw=["", ""])
 
         def register_magic_function(self, made, _kind, name):
             magics[name] = made

@@ -4,6 +4,7 @@ import contextlib
 import importlib.util
 import io
 import json
+import os
 import queue
 import subprocess
 import urllib.error
@@ -156,6 +157,47 @@ def test_submit_hands_in_the_module_where_both_were_worked_in_and_says_so(course
     assert "Left out: doubling/doubling.ipynb (doubling.py was worked in too, and is handed in)." in ran.out
     assert "doubling/doubling.py" in handed_in(workspace)
     assert "doubling/doubling.ipynb" not in handed_in(workspace)
+
+
+def test_a_notebook_under_another_name_is_told_wherever_it_is_not_read(course, workspace, notebook):
+    """As JupyterLab's Duplicate and Rename leave it."""
+    notebook.with_suffix(".py").unlink()
+    write_into(notebook, GOOD)
+    copy = notebook.with_name("doubling-Copy1.ipynb")
+    copy.write_bytes(notebook.read_bytes())
+    assert "Copy1" not in course("check", "doubling").err  # the same work twice
+    write_into(copy, GOOD, OTHER)
+    os.utime(notebook, (1, 1))  # the copy was saved last
+    unread = "doubling/doubling-Copy1.ipynb is not read: the file that counts is doubling.ipynb."
+    assert unread in course("check", "doubling").err
+    assert unread in course("submit").err
+    os.utime(copy, (0, 0))  # a copy that was put away: nothing to say
+    assert "Copy1" not in course("check", "doubling").err
+
+    notebook.unlink()
+    course("check", "doubling").refuses(3, "rename it to doubling.ipynb")
+    course("submit").ends(3, "doubling-Copy1.ipynb is not read under that name")
+    course("notebook", "build", "doubling")
+    course("submit").ends(
+        3, "doubling/doubling.py (not there; doubling-Copy1.ipynb is not read under that name)"
+    )
+    course("start", "doubling")
+    course("submit").ends(3, "still the stub; doubling-Copy1.ipynb is not read under that name")
+
+
+def test_reset_takes_the_notebook_where_that_is_what_counts(course, workspace, notebook):
+    """And `start` names it, where both are there."""
+    write_into(notebook, GOOD)
+    mine = notebook.read_bytes()
+    assert "write your code in doubling/doubling.ipynb" in course("start", "doubling").out
+    for _ in range(2):
+        body = course("reset", "doubling", "--yes", "--json").json
+        assert [item["path"] for item in body["backups"]] == [str(notebook)]
+        assert (workspace / body["backups"][0]["backup"]).read_bytes() == mine
+        assert GOOD not in notebook.read_text("utf-8")
+        notebook.with_suffix(".py").unlink(missing_ok=True)  # then there is only the notebook
+        notebook.write_bytes(mine)
+    assert not notebook.with_suffix(".py").exists()
 
 
 def test_submit_says_why_a_notebook_cannot_go_in(course, notebook, write, monkeypatch):

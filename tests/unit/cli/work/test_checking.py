@@ -68,7 +68,7 @@ def test_a_file_whose_name_has_other_capitals_is_told(course, write):
     assert "doubling/Doubling.py is not read" in course("submit").err
     path.unlink()
     course("check").refuses(3, "Rename Doubling.py to doubling.py")
-    assert "doubling/doubling.py (not there; Doubling.py is not read)" in course("submit").out
+    assert "doubling/doubling.py (not there; Doubling.py is not read under that name)" in course("submit").out
 
 
 def test_a_link_to_no_file_is_told(course, write):

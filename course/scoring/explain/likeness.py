@@ -88,7 +88,7 @@ def of_cases(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
 
 
 def _of_every(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
-    """The one factor, or the one distance, between the numbers of all cases."""
+    """The one factor, the one distance or the one rounding between the numbers of all cases."""
     pairs = [(a, e) for a, e, _ in cases if isinstance(a, int | float) and isinstance(e, int | float)]
     if not len(cases) == len(pairs) > 1 or any(isinstance(one, bool) for pair in pairs for one in pair):
         return ""
@@ -99,6 +99,9 @@ def _of_every(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
         return f"Each wrong result is {ratio[0]:.6g} times the right one."
     if _steady(apart):
         return f"Each wrong result is too {'large' if apart[0] > 0 else 'small'} by {abs(apart[0]):.6g}."
+    places = next((n for n in range(10) if all(one == round(right, n) for one, right in pairs)), None)
+    if places is not None and any(_digits(one) > _ROUNDED for one, _ in pairs):
+        return f"Each wrong result is the right one rounded to {counted(places, 'decimal')}."
     return ""
 
 

@@ -388,7 +388,7 @@ def _in_common(
     said = of_cases([(v, plain(e), plain(named)) for v, (named, e) in zip(values, wrong, strict=True)])
     if said and not said.startswith(("Only ", "Every ")):  # those are of the first case alone
         return said
-    if len(wrong) > 1:
+    if any(plain(e) != plain(wrong[0][1]) for _, e in wrong):  # one value is right by chance
         every = [*wrong, *right]  # most changes are refuted by the first
         for instead, calls in other_inputs([named for named, _ in every]):
             if all(is_right(args, e) for args, (_, e) in zip(calls, every, strict=True)):

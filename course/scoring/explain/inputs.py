@@ -6,18 +6,22 @@ all of them right.
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-#: What a number or a list may be, and how it is said.
-_RESPECTS: tuple[tuple[str, Callable[[Any], bool]], ...] = (
-    ("is negative", lambda value: _is_number(value) and value < 0),
+#: What an input may be where a result is right only by luck, and where one is wrong though others are right.
+_LUCKY: tuple[tuple[str, Callable[[Any], bool]], ...] = (
     ("is 0", lambda value: _is_number(value) and value == 0),
     ("is 1", lambda value: _is_number(value) and value == 1),
-    ("has one value", lambda value: _length(value) == 1),
     ("has two values", lambda value: _length(value) == 2),
+)
+_FORGOTTEN: tuple[tuple[str, Callable[[Any], bool]], ...] = (
+    ("is negative", lambda value: _is_number(value) and value < 0),
+    ("is 0", lambda value: _is_number(value) and value == 0),
+    ("has one value", lambda value: _length(value) == 1),
     (
         "has a negative value",
         lambda value: _length(value) > 0 and any(_is_number(v) and v < 0 for v in value),
@@ -44,15 +48,15 @@ def where_right(right: Sequence[Mapping[str, Any]], wrong: Sequence[Mapping[str,
     Returns:
         What follows "it is right"; "" if there is no such thing, or more than one.
     """
-    names = set.intersection(*(set(given) for given in (*right, *wrong)))
+    names = sorted(set.intersection(*(set(given) for given in (*right, *wrong))))
     found = []
-    for name, (is_so, holds) in itertools.product(sorted(names), _RESPECTS):
-        of_right = {holds(given[name]) for given in right}
-        of_wrong = {holds(given[name]) for given in wrong}
-        if (of_right, of_wrong) == ({True}, {False}):
-            found.append(f", where `{name}` {is_so}")
-        elif (of_right, of_wrong) == ({False}, {True}):
-            found.append(f", and wrong where `{name}` {is_so}")
+    for said, respects, these, those in (
+        (", where", _LUCKY, right, wrong),
+        (", and wrong where", _FORGOTTEN, wrong, right),
+    ):
+        for name, (is_so, holds) in itertools.product(names, respects):
+            if all(holds(one[name]) for one in these) and not any(holds(one[name]) for one in those):
+                found.append(f"{said} `{name}` {is_so}")
     return found[0] if len(found) == 1 else ""
 
 
@@ -60,27 +64,18 @@ def other_inputs(calls: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, list
     """Other arguments for some calls of a function, with how the change is said.
 
     Args:
-        calls: the arguments of each call, by name. Nothing is given if not all have the same ones.
+        calls: the arguments of each call, by name. One that not all calls have, for its default, is kept.
     """
-    names = list(calls[0])
-    if any(list(given) != names for given in calls):
-        return
-    for i, j in itertools.combinations(range(len(names)), 2):
-        columns = [{_kind(given[name]) for given in calls} for name in (names[i], names[j])]
-        if columns[0] == columns[1] and len(columns[0]) == 1:
-            places = list(range(len(names)))
-            places[i], places[j] = j, i
-            swapped = [tuple(given[names[k]] for k in places) for given in calls]
-            yield f"`{names[i]}` and `{names[j]}` exchanged", swapped
+    names = [name for name in calls[0] if all(name in given for given in calls)]
+    for one, other in itertools.combinations(names, 2):
+        kinds = {_kind(given[name]) for given in calls for name in (one, other)}
+        if len(kinds) == 1:
+            exchanged = [{**given, one: given[other], other: given[one]} for given in calls]
+            yield f"`{one}` and `{other}` exchanged", [tuple(given.values()) for given in exchanged]
     for name, (instead, value) in itertools.product(names, _INSTEAD):
-        changed = []
-        for given in calls:
-            try:
-                changed.append(tuple({**given, name: value(given[name])}.values()))
-            except (TypeError, ValueError, ArithmeticError):
-                break
-        if len(changed) == len(calls):
-            yield f"{instead.format(f'`{name}`')} in its place", changed
+        with contextlib.suppress(TypeError, ValueError, ArithmeticError):
+            changed = [{**given, name: value(given[name])} for given in calls]
+            yield f"{instead.format(f'`{name}`')} in its place", [tuple(given.values()) for given in changed]
 
 
 def _is_number(value: Any) -> bool:

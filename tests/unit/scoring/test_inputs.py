@@ -23,6 +23,8 @@ from course.scoring.explain.inputs import other_inputs, where_right
         # An argument that has a default is not always given.
         ([{"x": 2.0}], [{"x": 3.0, "g": 0.0}], ""),
         ([{"x": 2.0}, {"x": -3.0}], [{"x": -1.0}], ""),
+        # Nobody writes a function for numbers below zero alone.
+        ([{"x": -2.0}, {"x": -3.0}], [{"x": 1.0}], ""),
     ],
 )
 def test_right_and_wrong_results_are_told_apart_by_one_input(right, wrong, said):
@@ -42,7 +44,12 @@ def test_a_change_that_some_input_does_not_allow_is_left_out():
     assert "one over `a` in its place" not in changes
     assert "the root of `a` in its place" not in changes
     assert "the other sign of `a` in its place" in changes
-    assert not list(other_inputs([{"a": 2.0}, {"a": 2.0, "g": 9.81}]))
+
+
+def test_an_argument_with_a_default_is_kept_as_it_was_given():
+    calls = dict(other_inputs([{"m": 2.0, "l": 1.0}, {"m": 3.0, "l": 0.5, "g": 1.62}]))
+    assert calls["`m` and `l` exchanged"] == [(1.0, 2.0), (0.5, 3.0, 1.62)]
+    assert not any("`g`" in instead for instead in calls)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn, TypeVar, cast
 
@@ -32,6 +32,7 @@ from course.physics.invariants import convergence_order
 from course.physics.systems import System
 from course.scoring.checks.collected import companion, known_answers, reference, sibling, words
 from course.scoring.explain.fingerprint import in_range
+from course.scoring.explain.inputs import other_inputs, where_right
 from course.scoring.explain.likeness import of_cases
 from course.scoring.explain.story import SAME, Diagnosis, Words, said_once
 from course.scoring.failures import (
@@ -315,6 +316,7 @@ def expect_cases(
     cases: Iterable[tuple[tuple[Any, ...], Any]],
     *,
     expect: Callable[..., None] = expect_close,
+    raised: Mapping[str, str] | None = None,
     **finding: Any,
 ) -> None:
     """A student's function gives what each case says, to nine digits unless a tolerance is given.
@@ -324,6 +326,7 @@ def expect_cases(
             fewer than there are.
         cases: the arguments of a call, and its right result.
         expect: what compares the two; ``finding`` has its keywords.
+        raised: by an exception that a mistake raises here, what to do about it.
     """
     if expect is not expect_equal:
         finding = {"rel": 1e-9, "source": _CLOSED_FORM} | finding
@@ -331,40 +334,69 @@ def expect_cases(
     for i, (args, expected) in enumerate(cases):
         given = dict(zip(arguments, args, strict=False))
         try:
-            expect(submission.call(function, *args), expected, input=given, **finding)
+            expect(_called(submission, function, args, raised or {}, given), expected, input=given, **finding)
         except CheckFailed as failed:
-            named = [(dict(zip(arguments, one, strict=False)), one, right) for one, right in cases[i:]]
+            named = [(dict(zip(arguments, one, strict=False)), right) for one, right in cases]
             failed.common = functools.partial(_in_common, submission, function, named, i, expect, finding)
             raise
+
+
+def _called(
+    submission: Any, function: str, args: tuple[Any, ...], raised: Mapping[str, str], given: dict[str, Any]
+) -> Any:
+    """What a call gives; an exception that has its own advice is a wrong result with that advice."""
+    try:
+        return submission.call(function, *args)
+    except StudentFailure as failure:
+        for exception, advice in raised.items():
+            if failure.is_a(exception):
+                fail(finding_for(failure).message, help=advice, input=given)
+        raise
 
 
 def _in_common(
     submission: Any,
     function: str,
-    cases: Sequence[tuple[dict[str, Any], tuple[Any, ...], Any]],
-    right: int,
+    cases: Sequence[tuple[dict[str, Any], Any]],
+    first: int,
     expect: Callable[..., None],
     finding: dict[str, Any],
 ) -> str:
-    """What the call of the first case does to its arguments, or what the wrong results have in common.
+    """What the first wrong call does to its arguments, or what the wrong results have in common.
 
     Args:
-        right: how many cases before these had the right result.
+        cases: the arguments of each call by name, and its right result.
+        first: which of them has the first wrong result.
     """
-    named, args, _ = cases[0]
-    after = submission.call_inspect(function, *args).args_after
-    for name, before, then in zip(named, args, after, strict=False):
+    given = cases[first][0]
+    after = submission.call_inspect(function, *given.values()).args_after
+    for (name, before), then in zip(given.items(), after, strict=False):
         if isinstance(before, list) and plain(before) != plain(then):
             return f"Your code changes `{name}`, the list that it is given."
-    wrong = []
-    for named, args, expected in cases:
-        value = submission.call(function, *args)
-        try:
-            expect(value, expected, **finding)
-        except CheckFailed:
-            wrong.append((plain(value), plain(expected), plain(named)))
-    right += len(cases) - len(wrong)
-    return of_cases(wrong) or (right and f"For {right} of {right + len(wrong)} inputs it is right.") or ""
+
+    def is_right(args: Iterable[Any], expected: Any) -> bool:
+        with contextlib.suppress(CheckFailed):
+            expect(_called(submission, function, tuple(args), {"Exception": ""}, {}), expected, **finding)
+            return True
+        return False
+
+    right: list[tuple[dict[str, Any], Any]] = []
+    wrong: list[tuple[dict[str, Any], Any]] = []
+    for named, expected in cases:
+        (right if is_right(named.values(), expected) else wrong).append((named, expected))
+    values = [plain(submission.call(function, *named.values())) for named, _ in wrong]
+    said = of_cases([(v, plain(e), plain(named)) for v, (named, e) in zip(values, wrong, strict=True)])
+    if said and not said.startswith(("Only ", "Every ")):  # those are of the first case alone
+        return said
+    if any(plain(e) != plain(wrong[0][1]) for _, e in wrong):  # one value is right by chance
+        every = [*wrong, *right]  # most changes are refuted by the first
+        for instead, calls in other_inputs([named for named, _ in every]):
+            if all(is_right(args, e) for args, (_, e) in zip(calls, every, strict=True)):
+                return f"With {instead} every result is right."
+    if said or not right:
+        return said
+    where = where_right([named for named, _ in right], [named for named, _ in wrong])
+    return f"For {len(right)} of {len(cases)} inputs it is right{where}."
 
 
 _CLOSED_FORM = "closed form, written down to twelve digits: only rounding is allowed"

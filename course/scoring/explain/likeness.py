@@ -88,18 +88,31 @@ def of_cases(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
 
 
 def _of_every(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
-    """The one factor, or the one distance, between the numbers of all cases."""
+    """What two or more wrong numbers are: all the same, or all made of the right ones in one way."""
     pairs = [(a, e) for a, e, _ in cases if isinstance(a, int | float) and isinstance(e, int | float)]
     if not len(cases) == len(pairs) > 1 or any(isinstance(one, bool) for pair in pairs for one in pair):
         return ""
+    said = _of_pairs(pairs)
+    return f"Each wrong result is {said}." if said else ""
+
+
+def _of_pairs(pairs: Sequence[tuple[float, float]]) -> str:
+    """The one value, factor, distance or rounding of some numbers."""
     a, e = np.array(pairs, dtype=float).T
     with np.errstate(all="ignore"):
         ratio, apart = a / e, a - e
+    if not np.ptp(a):
+        return f"{a[0]:g}" if np.ptp(e) else ""
     if _steady(ratio):
-        return f"Each wrong result is {ratio[0]:.6g} times the right one."
+        return f"{ratio[0]:.6g} times the right one"
     if _steady(apart):
-        return f"Each wrong result is too {'large' if apart[0] > 0 else 'small'} by {abs(apart[0]):.6g}."
-    return ""
+        return f"too {'large' if apart[0] > 0 else 'small'} by {abs(apart[0]):.6g}"
+    if np.all(a == np.trunc(e)):
+        return "the right one without its decimals"
+    places = next((n for n in range(10) if all(one == round(right, n) for one, right in pairs)), None)
+    if places is None or all(_digits(one) <= _ROUNDED for one in a):
+        return ""
+    return f"the right one rounded to {counted(places, 'decimal')}"
 
 
 def _steady(numbers: Array) -> bool:

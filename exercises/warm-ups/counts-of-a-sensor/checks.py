@@ -4,6 +4,14 @@ import pytest
 
 from course.scoring import kit
 
+WITHIN_REACH = [
+    ((1.237, 0.01, 4.0), 1.24),
+    ((1.233, 0.01, 4.0), 1.23),
+    ((0.7, 0.25, 2.0), 0.75),
+    ((2.6, 0.3333333, 7.0), 2.6666664),
+]
+BEYOND_REACH = [((7.3, 0.01, 4.0), 4.0), ((2.2, 0.25, 2.0), 2.0), ((0.31, 0.01, 0.29), 0.29)]
+
 
 @pytest.mark.task("reading")
 @pytest.mark.points(1)
@@ -13,12 +21,7 @@ def test_within(submission):
         submission,
         "reading",
         ("distance", "resolution", "limit"),
-        [
-            ((1.237, 0.01, 4.0), 1.24),
-            ((1.233, 0.01, 4.0), 1.23),
-            ((0.7, 0.25, 2.0), 0.75),
-            ((2.6, 0.5, 7.0), 2.5),
-        ],
+        WITHIN_REACH,
         quantity="the reading",
         units="m",
         message="A reading within reach is wrong.",
@@ -44,7 +47,7 @@ def test_beyond(submission):
         submission,
         "reading",
         names,
-        [((7.3, 0.01, 4.0), 4.0), ((2.2, 0.25, 2.0), 2.0), ((0.31, 0.01, 0.29), 0.29)],
+        BEYOND_REACH,
         quantity="the reading",
         units="m",
         message="A reading beyond reach is wrong.",
@@ -53,15 +56,4 @@ def test_beyond(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "reading": [
-        (1.237, 0.01, 4.0),
-        (1.233, 0.01, 4.0),
-        (0.7, 0.25, 2.0),
-        (7.3, 0.01, 4.0),
-        (2.2, 0.25, 2.0),
-        (0.31, 0.01, 0.29),
-        (0.6, 0.25, 3.0),
-        (2.6, 0.5, 7.0),
-    ]
-}
+QUESTIONS = {"reading": [args for args, _ in WITHIN_REACH + BEYOND_REACH]}

@@ -4,6 +4,8 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [((4.0, 1.0, 0.05), 1.01), ((100.0, 2.5, 0.1), 1.4), ((0.3, 7.0, 1.0), 1.04285714286)]
+
 
 @pytest.mark.task("growth")
 @pytest.mark.points(1)
@@ -13,8 +15,7 @@ def test_factors(submission):
         submission,
         "growth",
         ("k", "m", "h"),
-        [((4.0, 1.0, 0.05), 1.01), ((100.0, 2.5, 0.1), 1.4), ((0.3, 6.0, 1.0), 1.05)],
-        source="the squares of the two new values, added up: the mixed terms cancel exactly",
+        CASES,
         quantity="the energy factor of a step",
         message="The factor of one step is wrong.",
         help="Square x + h v and v - h (k/m) x, weight them as in the energy, and add.",
@@ -22,4 +23,4 @@ def test_factors(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"growth": [(4.0, 1.0, 0.05), (100.0, 2.5, 0.1), (0.3, 6.0, 1.0)]}
+QUESTIONS = {"growth": [args for args, _ in CASES]}

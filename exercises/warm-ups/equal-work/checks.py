@@ -4,6 +4,14 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [
+    ((0.01, 50, 10), 0.002),
+    ((0.002, 8, 20), 0.005),
+    ((0.005, 30, 30), 0.005),
+    ((0.005, 30, 7), 0.00116666666667),
+    ((0.001, 30, 7), 0.000233333333333),
+]
+
 
 @pytest.mark.task("fair_step")
 @pytest.mark.points(1)
@@ -13,12 +21,8 @@ def test_steps(submission):
         submission,
         "fair_step",
         ("h", "iterations", "other"),
-        [
-            ((0.01, 50, 10), 0.002),
-            ((0.002, 8, 20), 0.005),
-            ((0.005, 30, 30), 0.005),
-            ((0.001, 20, 7), 0.00035),
-        ],
+        CASES,
+        raised={"ZeroDivisionError": "8 // 20 is 0, and int cuts off, too: divide with one slash, /."},
         quantity="the step",
         units="s",
         message="The step of the other engine is wrong.",
@@ -27,4 +31,4 @@ def test_steps(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"fair_step": [(0.01, 50, 10), (0.002, 8, 20), (0.005, 30, 7)]}
+QUESTIONS = {"fair_step": [args for args, _ in CASES]}

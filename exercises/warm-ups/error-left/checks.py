@@ -4,6 +4,14 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [
+    ((10.4, 10.1, 2.0, 2.0), 0.1),
+    ((10.4, 10.2, 2.0, 1.0), 0.2),
+    ((-3.0, -2.68, 3.0, 2.0), -0.04),
+    ((1.0, 1.255, 4.0, 4.0), -0.001),
+    ((7.0, 6.0, 10.0, 1.5), 0.0326554320337),
+]
+
 
 @pytest.mark.task("error_left")
 @pytest.mark.points(1)
@@ -13,13 +21,7 @@ def test_errors(submission):
         submission,
         "error_left",
         ("coarse", "fine", "factor", "order"),
-        [
-            ((10.4, 10.1, 2.0, 2.0), 0.1),
-            ((10.4, 10.2, 2.0, 1.0), 0.2),
-            ((-3.0, -2.68, 3.0, 2.0), -0.04),
-            ((1.0, 1.255, 4.0, 4.0), -0.001),
-            ((7.0, 6.0, 10.0, 1.5), 0.0326554320337),
-        ],
+        CASES,
         quantity="the error left",
         message="That is not the error that is left.",
         help="Say the exact result is 0 and fine is 1. What is coarse then, with this factor and order?",
@@ -27,12 +29,4 @@ def test_errors(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "error_left": [
-        (10.4, 10.1, 2.0, 2.0),
-        (10.4, 10.2, 2.0, 1.0),
-        (-3.0, -2.68, 3.0, 2.0),
-        (1.0, 1.255, 4.0, 4.0),
-        (7.0, 6.0, 10.0, 1.5),
-    ]
-}
+QUESTIONS = {"error_left": [args for args, _ in CASES]}

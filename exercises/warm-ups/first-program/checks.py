@@ -8,18 +8,28 @@ from course.scoring import kit
 
 ROUNDING = "closed form: only rounding is allowed"
 
+FIRST, SECOND = [[0.0, 1.0], [1.5, 1.25]], [[5.0, -2.0], [3.0, -2.5]]
+GAPS = [
+    ((FIRST, SECOND, 0), 5.0),
+    ((FIRST, SECOND, 1), 1.5),
+    ((SECOND, FIRST, 0), 5.0),
+    (([[-5.0, 2.0], [-3.0, 2.0]], [[5.0, -2.0], [4.0, -2.0]], 1), 7.0),
+]
+LANDINGS = [
+    ([0.5, 0.2, -0.2, -0.7, -1.3], 0.02),
+    ([1.0, 0.6, 0.0, -0.9], 0.02),
+    ([0.4, -0.1, 0.3, 0.1], 0.01),
+    ([0.0, -0.1, -0.3], 0.0),
+    ([0.5, 0.004, -0.3], 0.02),
+]
+CONTACTS = [((2.0, -2.0), [-2.0, 2.0]), ((3.0, 1.0), [1.0, 3.0]), ((0.5, -1.5), [-1.5, 0.5])]
+
 
 @pytest.mark.task("gap")
 @pytest.mark.points(1)
 def test_gap_is_a_number(submission):
     """The distance between two balls at one sample"""
-    first, second = [[0.0, 1.0], [1.5, 1.0]], [[5.0, -2.0], [3.0, -2.0]]
-    for one, other, k, expected in (
-        (first, second, 0, 5.0),
-        (first, second, 1, 1.5),
-        (second, first, 0, 5.0),
-        ([[-5.0, 2.0], [-3.0, 2.0]], [[5.0, -2.0], [4.0, -2.0]], 1, 7.0),
-    ):
+    for (one, other, k), expected in GAPS:
         kit.expect_close(
             kit.expect_accepts(
                 lambda one=one, other=other, k=k: submission.call("gap", one, other, k),
@@ -80,13 +90,7 @@ def test_run_begins_at_the_start(submission):
 @pytest.mark.points(1)
 def test_landing_is_where_the_ground_is(submission):
     """Where a fall ends"""
-    for heights, expected in (
-        ([0.5, 0.2, -0.2, -0.7, -1.3], 0.02),
-        ([1.0, 0.6, 0.0, -0.9], 0.02),
-        ([0.4, -0.1, 0.3, 0.1], 0.01),
-        ([0.0, -0.1, -0.3], 0.0),
-        ([0.5, 0.004, -0.3], 0.02),
-    ):
+    for heights, expected in LANDINGS:
         found = submission.call("landing_time", heights)
         kit.expect_true(
             found is not None or heights[0] > 0.0,
@@ -120,7 +124,7 @@ def test_landing_is_where_the_ground_is(submission):
 @pytest.mark.points(1)
 def test_balls_bounce(submission):
     """Equal balls that meet head-on"""
-    for before, after in (((2.0, -2.0), [-2.0, 2.0]), ((3.0, 1.0), [1.0, 3.0])):
+    for before, after in CONTACTS:
         kit.expect_array(
             submission.call("after_contact", *before),
             after,
@@ -185,26 +189,12 @@ def test_error_is_taken_at_one_moment(submission):
         )
 
 
-# Calls that tell wrong programs apart.
-_FIRST, _SECOND = [[0.0, 1.0], [1.5, 1.25]], [[5.0, -2.0], [3.0, -2.5]]
-
+#: Calls that tell wrong programs apart.
 QUESTIONS = {
-    "gap": [
-        (_FIRST, _SECOND, 0),
-        (_FIRST, _SECOND, 1),
-        (_SECOND, _FIRST, 1),
-        ([[-5.0, 2.0]], [[5.0, -2.0]], 0),
-    ],
+    "gap": [args for args, _ in GAPS],
     "run": [(10.0, 2.0, -9.81, 3), (0.5, -1.0, 4.0, 1), (0.5, -1.0, 4.0, 0)],
-    "landing_time": [
-        ([0.5, 0.2, -0.2, -0.7, -1.3],),
-        ([1.0, 0.6, 0.0, -0.9],),
-        ([2.0, 1.5],),
-        ([0.4, -0.1, 0.3, 0.1],),
-        ([0.0, -0.1, -0.3],),
-        ([0.5, 0.004, -0.3],),
-    ],
-    "after_contact": [(2.0, -2.0), (3.0, 1.0), (0.5, -1.5)],
+    "landing_time": [([2.0, 1.5],), *((heights,) for heights, _ in LANDINGS)],
+    "after_contact": [velocities for velocities, _ in CONTACTS],
     "euler_step": [(1.0, 0.5, -4.0, 0.1), (0.3, -2.0, 1.0, 0.5)],
     "error_at_end": [
         ([1.0, 0.9, 0.7], 2.0),

@@ -4,6 +4,16 @@ import pytest
 
 from course.scoring import kit
 
+ASKED = {"abs": 1e-12, "quantity": "the velocity afterwards", "units": "m/s"}
+ON_THE_WAY_DOWN = [
+    ((-3.0, 0.8), 2.4),
+    ((-0.25, 0.5), 0.125),
+    ((-1.234567, 0.7), 0.8641969),
+    ((-1.3, 0.0), 0.0),
+    ((-0.005, 0.5), 0.0025),
+]
+ON_THE_WAY_UP = [((2.0, 0.8), 2.0), ((0.5, 0.3), 0.5), ((0.0, 0.4), 0.0), ((1.0, 0.0), 1.0)]
+
 
 @pytest.mark.task("after_floor")
 @pytest.mark.points(1)
@@ -13,17 +23,8 @@ def test_on_the_way_down(submission):
         submission,
         "after_floor",
         ("v", "e"),
-        [
-            ((-3.0, 0.8), 2.4),
-            ((-0.25, 0.5), 0.125),
-            ((-2.0, 0.3), 0.6),
-            ((-1.3, 0.0), 0.0),
-            ((-0.005, 0.5), 0.0025),
-        ],
-        abs=1e-12,
-        source="closed form; absolute 1e-12 m/s where it is zero",
-        quantity="the velocity afterwards",
-        units="m/s",
+        ON_THE_WAY_DOWN,
+        **ASKED,
         message="The velocity after a bounce is wrong.",
         help=("Restitution is the speed after over the speed before, and the direction turns round."),
     )
@@ -37,26 +38,12 @@ def test_on_the_way_up(submission):
         submission,
         "after_floor",
         ("v", "e"),
-        [((2.0, 0.8), 2.0), ((0.5, 0.3), 0.5), ((0.0, 0.4), 0.0), ((1.0, 0.0), 1.0)],
-        abs=1e-12,
-        source="closed form; absolute 1e-12 m/s where it is zero",
-        quantity="the velocity afterwards",
-        units="m/s",
+        ON_THE_WAY_UP,
+        **ASKED,
         message="A ball that does not move into the floor has another velocity now.",
         help="Ask first whether the ball is moving into the floor.",
     )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "after_floor": [
-        (-3.0, 0.8),
-        (2.0, 0.8),
-        (-0.25, 0.5),
-        (0.0, 0.4),
-        (0.5, 0.3),
-        (-1.0, 1.0),
-        (-1.3, 0.0),
-        (-0.005, 0.5),
-    ]
-}
+QUESTIONS = {"after_floor": [args for args, _ in ON_THE_WAY_DOWN + ON_THE_WAY_UP]}

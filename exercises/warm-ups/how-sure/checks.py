@@ -4,6 +4,12 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [
+    (([1.0, 3.0],), 1.0),
+    (([2.0, 4.0, 4.0, 6.0],), 0.816496580928),
+    (([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],), 0.0484322104838),
+]
+
 
 @pytest.mark.task("standard_error")
 @pytest.mark.points(1)
@@ -13,11 +19,7 @@ def test_samples(submission):
         submission,
         "standard_error",
         ("values",),
-        [
-            (([1.0, 3.0],), 1.0),
-            (([2.0, 4.0, 4.0, 6.0],), 0.816496580928),
-            (([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],), 0.0484322104838),
-        ],
+        CASES,
         quantity="the standard error",
         message="The standard error is wrong.",
         help=(
@@ -28,10 +30,4 @@ def test_samples(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "standard_error": [
-        ([1.0, 3.0],),
-        ([2.0, 4.0, 4.0, 6.0],),
-        ([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],),
-    ]
-}
+QUESTIONS = {"standard_error": [args for args, _ in CASES]}

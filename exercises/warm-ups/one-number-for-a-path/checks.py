@@ -4,6 +4,12 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [
+    (([0.0, 1.0], [0.3, 0.4]), 0.474341649025),
+    (([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]), 0.173205080757),
+    (([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]), 1.43178210633),
+]
+
 
 @pytest.mark.task("rms")
 @pytest.mark.points(1)
@@ -13,11 +19,7 @@ def test_paths(submission):
         submission,
         "rms",
         ("simulated", "measured"),
-        [
-            (([0.0, 1.0], [0.3, 0.4]), 0.474341649025),
-            (([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]), 0.173205080757),
-            (([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]), 1.43178210633),
-        ],
+        CASES,
         quantity="the root mean square",
         units="m",
         message="The root mean square is wrong.",
@@ -26,10 +28,4 @@ def test_paths(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "rms": [
-        ([0.0, 1.0], [0.3, 0.4]),
-        ([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]),
-        ([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]),
-    ]
-}
+QUESTIONS = {"rms": [args for args, _ in CASES]}

@@ -5,7 +5,7 @@ def same_floor(erp, cfm, h, new_h):
     """ERP and CFM that keep a soft floor what it is when the step changes.
 
     Args:
-        erp: error reduction at the step h, no unit.
+        erp: error reduction at the step h, no unit; greater than zero.
         cfm: constraint force mixing at the step h, s/kg; greater than zero.
         h: the step so far, s.
         new_h: the new step, s.

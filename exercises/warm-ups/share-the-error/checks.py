@@ -4,6 +4,15 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [
+    ((1.0, 1.4, 0.25), 1.1),
+    ((2.0, 1.0, 0.9), 1.1),
+    ((-0.5, 0.7, 1.0), 0.7),
+    ((3.0, 8.0, 0.1), 3.5),
+    ((2.5, -1.5, 0.0), 2.5),
+    ((-0.5, -1.3, 0.123457), -0.5987656),
+]
+
 
 @pytest.mark.task("corrected")
 @pytest.mark.points(1)
@@ -13,13 +22,7 @@ def test_corrections(submission):
         submission,
         "corrected",
         ("predicted", "measured", "share"),
-        [
-            ((1.0, 1.4, 0.25), 1.1),
-            ((2.0, 1.0, 0.9), 1.1),
-            ((-0.5, 0.7, 1.0), 0.7),
-            ((3.0, 8.0, 0.1), 3.5),
-            ((2.5, -1.5, 0.0), 2.5),
-        ],
+        CASES,
         quantity="the position",
         units="m",
         message="The corrected position is wrong.",
@@ -28,6 +31,4 @@ def test_corrections(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "corrected": [(1.0, 1.4, 0.25), (2.0, 1.0, 0.9), (-0.5, 0.7, 1.0), (3.0, 8.0, 0.1), (2.5, -1.5, 0.0)]
-}
+QUESTIONS = {"corrected": [args for args, _ in CASES]}

@@ -4,6 +4,14 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [
+    ((1.2, 0.03, 1.25, 0.04), 1.0),
+    ((5.0, 0.2, 4.0, 0.1), 4.472135955),
+    ((0.0, 1.0, 2.6, 2.4), 1.0),
+    ((-0.4, 0.3, 0.5, 0.4), 1.8),
+    ((-2.5, 0.1, -2.0, 0.2), 2.2360679775),
+]
+
 
 @pytest.mark.task("distance_in_doubts")
 @pytest.mark.points(1)
@@ -13,7 +21,7 @@ def test_distances(submission):
         submission,
         "distance_in_doubts",
         ("simulated", "doubt_s", "measured", "doubt_m"),
-        [((1.2, 0.03, 1.25, 0.04), 1.0), ((5.0, 0.2, 4.0, 0.1), 4.472135955), ((0.0, 1.0, 2.6, 2.4), 1.0)],
+        CASES,
         quantity="the distance in doubts",
         message="The difference in units of its uncertainty is wrong.",
         help="What is the uncertainty of a difference of two uncertain numbers?",
@@ -21,4 +29,4 @@ def test_distances(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"distance_in_doubts": [(1.2, 0.03, 1.25, 0.04), (5.0, 0.2, 4.0, 0.1), (0.0, 1.0, 2.6, 2.4)]}
+QUESTIONS = {"distance_in_doubts": [args for args, _ in CASES]}

@@ -4,6 +4,13 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [
+    ((0.1, 0.05, 0.01), 20.0),
+    ((0.02, 0.003, 0.004), 6.5),
+    ((0.5, 0.0, 0.02), 25.0),
+    ((0.1, 0.05, 0.003), 66.6666666667),
+]
+
 
 @pytest.mark.task("fastest")
 @pytest.mark.points(1)
@@ -13,12 +20,7 @@ def test_speeds(submission):
         submission,
         "fastest",
         ("thickness", "radius", "h"),
-        [
-            ((0.1, 0.05, 0.01), 20.0),
-            ((0.02, 0.003, 0.004), 6.5),
-            ((0.5, 0.0, 0.02), 25.0),
-            ((0.1, 0.05, 0.003), 66.6666666667),
-        ],
+        CASES,
         quantity="the largest speed",
         units="m/s",
         message="The largest speed is wrong.",
@@ -27,4 +29,4 @@ def test_speeds(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"fastest": [(0.1, 0.05, 0.01), (0.02, 0.003, 0.004), (0.5, 0.0, 0.02), (0.0, 0.2, 0.1)]}
+QUESTIONS = {"fastest": [args for args, _ in CASES]}

@@ -4,26 +4,35 @@ import pytest
 
 from course.scoring import kit
 
+NAMES = ("x", "y", "length")
+BOTH_PLACES = [
+    ((10.0, 3.0, 5.0), [6.0, 14.0]),
+    ((-2.0, 1.5, 2.5), [-4.0, 0.0]),
+    ((0.7, -0.3, 0.5), [0.3, 1.1]),
+    ((2.0, 1.0, 3.0), [-0.828427124746, 4.82842712475]),
+    ((1.25, 2.0, 2.0), [1.25, 1.25]),
+    ((0.5, -0.25, 0.25), [0.5, 0.5]),
+]
+OUT_OF_REACH = [
+    ((0.0, 2.5, 2.0), False),
+    ((4.0, -0.75, 0.5), False),
+    ((1.0, 1.0, 0.9999), False),
+    ((1.0, 1.0, 1.25), True),
+]
+
 
 @pytest.mark.task("carriages")
 @pytest.mark.points(1)
 def test_both_places(submission):
     """Points above and below the rail, and one that is just in reach"""
-    cases = [
-        ((10.0, 3.0, 5.0), [6.0, 14.0]),
-        ((-2.0, 1.5, 2.5), [-4.0, 0.0]),
-        ((0.7, -0.3, 0.5), [0.3, 1.1]),
-        ((2.0, 1.0, 3.0), [-0.828427124746, 4.82842712475]),
-        ((1.25, 2.0, 2.0), [1.25, 1.25]),
-        ((0.5, -0.25, 0.25), [0.5, 0.5]),
-    ]
-    for args, expected in cases:
+    for args, expected in BOTH_PLACES:
         found = submission.call("carriages", *args)
+        given = dict(zip(NAMES, args, strict=True))
         kit.expect_true(
             found is not None,
             "You found no place, though the rod reaches the point.",
             expected="a pair",
-            input=dict(zip(("x", "y", "length"), args, strict=True)),
+            input=given,
             help=(
                 "The rod reaches the point if it is at least as long as |y|, wherever along the rail"
                 " that is. Return both places."
@@ -33,7 +42,7 @@ def test_both_places(submission):
             kit.as_list(found, "the pair of places"),
             2,
             name="the pair of places",
-            input=dict(zip(("x", "y", "length"), args, strict=True)),
+            input=given,
             message="You do not give two places.",
             help="Give a pair. Where the rod stands upright both places are the same: give it twice.",
         )
@@ -45,7 +54,7 @@ def test_both_places(submission):
             source="closed form, written down to twelve digits; absolute 1e-9 m where it is zero",
             quantity="the pair of places",
             units="m",
-            input=dict(zip(("x", "y", "length"), args, strict=True)),
+            input=given,
             message="The places of the carriage are wrong.",
             help="Check it backwards: from each of your places, is the point one rod length away?",
         )
@@ -55,13 +64,15 @@ def test_both_places(submission):
 @pytest.mark.points(1)
 def test_out_of_reach(submission):
     """Points too far above and too far below the rail, and one that is within reach"""
-    for args, reached in (
-        ((0.0, 2.5, 2.0), False),
-        ((4.0, -0.75, 0.5), False),
-        ((1.0, 1.0, 0.9999), False),
-        ((1.0, 1.0, 1.25), True),
-    ):
-        found = submission.call("carriages", *args)
+    for args, reached in OUT_OF_REACH:
+        given = dict(zip(NAMES, args, strict=True))
+        found = kit.expect_accepts(
+            lambda args=args: submission.call("carriages", *args),
+            "ValueError",
+            message="Your code stops with a ValueError.",
+            help="Only within reach there is a root, or an angle. Ask first whether |y| is above the length.",
+            input=given,
+        )
         kit.expect_true(
             (found is not None) == reached,
             "You found no place, though the rod reaches the point."
@@ -69,21 +80,10 @@ def test_out_of_reach(submission):
             else "You do not give None, though the rod is too short to reach the point.",
             expected="a pair" if reached else None,
             actual=found,
-            input=dict(zip(("x", "y", "length"), args, strict=True)),
+            input=given,
             help="How far is the point from the rail, above or below? The rod must be as long as that.",
         )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "carriages": [
-        (10.0, 3.0, 5.0),
-        (-2.0, 1.5, 2.5),
-        (0.7, -0.3, 0.5),
-        (2.0, 1.0, 3.0),
-        (1.25, 2.0, 2.0),
-        (0.5, -0.25, 0.25),
-        (0.0, 2.5, 2.0),
-        (4.0, -0.75, 0.5),
-    ]
-}
+QUESTIONS = {"carriages": [args for args, _ in BOTH_PLACES + OUT_OF_REACH]}

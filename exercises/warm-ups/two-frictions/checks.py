@@ -4,6 +4,17 @@ import pytest
 
 from course.scoring import kit
 
+CASES = [
+    ((0.9, 0.1, "product"), 0.09),
+    ((0.9, 0.1, "mean"), 0.5),
+    ((0.9, 0.1, "larger"), 0.9),
+    ((0.2, 0.6, "larger"), 0.6),
+    ((1.2, 0.5, "product"), 0.6),
+    ((0.2, 0.6, "mean"), 0.4),
+    ((1.2, 0.9, "larger"), 1.2),
+    ((1.23457, 0.98765, "product"), 1.2193230605),
+]
+
 
 @pytest.mark.task("pair_friction")
 @pytest.mark.points(1)
@@ -13,15 +24,7 @@ def test_rules(submission):
         submission,
         "pair_friction",
         ("mu1", "mu2", "rule"),
-        [
-            ((0.9, 0.1, "product"), 0.09),
-            ((0.9, 0.1, "mean"), 0.5),
-            ((0.9, 0.1, "larger"), 0.9),
-            ((0.2, 0.6, "larger"), 0.6),
-            ((1.2, 0.5, "product"), 0.6),
-            ((0.2, 0.6, "mean"), 0.4),
-            ((1.2, 0.9, "larger"), 1.2),
-        ],
+        CASES,
         quantity="the coefficient",
         message="The coefficient of a pair is wrong.",
         help="Apply exactly the rule that is given.",
@@ -29,13 +32,4 @@ def test_rules(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "pair_friction": [
-        (0.9, 0.1, "product"),
-        (0.9, 0.1, "mean"),
-        (0.9, 0.1, "larger"),
-        (0.2, 0.6, "larger"),
-        (0.2, 0.6, "mean"),
-        (1.2, 0.5, "product"),
-    ]
-}
+QUESTIONS = {"pair_friction": [args for args, _ in CASES]}

@@ -21,7 +21,7 @@ mistakes(
 ).edit("total_error", {"in errors))": "in errors) / len(errors))"})
 mistakes(
     "ROOT_MISSING",
-    "Your result is the square of the total.",
+    "Your result is a square: the root is missing.",
     "Take the root at the end.",
 ).edit("total_error", {"math.sqrt(": "("})
 mistakes(
@@ -70,6 +70,21 @@ mistakes(
     "Small errors are left out.",
     "Add the squares of all of them: a small one counts little, but it counts.",
 ).edit("total_error", {"for error in errors": "for error in errors if error > 0.1 * max(errors)"})
+mistakes(
+    "FIRST_TWICE",
+    "The first error counts twice.",
+    "Start the sum at 0, or the loop at the second error.",
+).edit("total_error", {"math.sqrt(": "math.sqrt(errors[0] ** 2 + "})
+mistakes(
+    "ENDS_ALONE",
+    "Only the first and the last error count.",
+    "There may be more between them, or a single one: go through the whole list.",
+).body("total_error", "return math.hypot(errors[0], errors[-1])")
+mistakes(
+    "ONE_LEFT_OUT",
+    "The first or the last error does not count.",
+    "The first has the index 0, the last len(errors) - 1. `for error in errors` finds all.",
+).edit("total_error", {"for error in errors": "for error in errors[1:]"})
 
 mistakes.accept(
     "With hypot",
@@ -87,4 +102,23 @@ mistakes.accept(
                 total = (total**2 + error**2) ** 0.5
             return total
     """,
+)
+
+
+def total_of(part=lambda errors: errors, number=lambda errors: 1, root=0.5):
+    return lambda errors: (sum(error * error for error in part(errors)) / number(errors)) ** root
+
+
+mistakes.terms(
+    "total_error",
+    total_of,
+    {
+        "part": {
+            "ONE_LEFT_OUT": lambda errors: errors[:-1],
+            "FIRST_TWO_ONLY": lambda errors: errors[:2],
+            "FIRST_TWICE": lambda errors: [*errors, errors[0]],
+        },
+        "number": {"MEAN_NOT_SUM": len},
+        "root": {"ROOT_MISSING": 1.0},
+    },
 )

@@ -107,6 +107,10 @@ def counted(distance, resolution, limit):
     return limit if count * resolution > limit else count
 
 
+def two_decimals(distance, resolution, limit):
+    return min(round(distance, 2), limit)
+
+
 def none_beyond(distance, resolution, limit):
     return None if distance > limit else round(distance / resolution) * resolution
 
@@ -119,6 +123,7 @@ def begins_again(distance, resolution, limit):
 @mistakes.more
 def hypotheses():
     yield "reading", ("COUNTS_NOT_METRES",), counted
+    yield "reading", ("DECIMAL_PLACES",), two_decimals
     yield "reading", ("NOTHING_BEYOND",), none_beyond
     yield "reading", ("NOTHING_BEYOND",), begins_again
     yield from with_terms(
@@ -133,13 +138,4 @@ def hypotheses():
             "size": {"COUNTS_NOT_METRES": lambda resolution: 1.0},
             "most": {"LIMIT_FORGOTTEN": lambda limit: math.inf},
         },
-    )
-
-
-@mistakes.more
-def two_decimals():
-    yield (
-        "reading",
-        ("DECIMAL_PLACES",),
-        lambda distance, resolution, limit: min(round(distance, 2), limit),
     )

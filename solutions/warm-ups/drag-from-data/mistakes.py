@@ -95,6 +95,16 @@ mistakes(
         return f / v
     """,
 )
+mistakes(
+    "PAIRS_LOST",
+    "You sort the speeds and the forces, so a force no longer stands beside its speed.",
+    "Leave both lists in their order: forces[k] belongs to speeds[k].",
+).edit("damping", {"zip(speeds, forces)": "zip(sorted(speeds), sorted(forces))"})
+mistakes(
+    "DECIMALS_LOST",
+    "The decimals of the forces are cut off.",
+    "Leave out int, and take no array of whole numbers.",
+).edit("damping", {"v * f for": "v * int(f) for"})
 
 mistakes.accept(
     "Two dot products",

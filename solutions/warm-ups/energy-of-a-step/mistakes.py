@@ -90,8 +90,8 @@ mistakes.accept(
 )
 
 
-def growth_of(omega2=lambda k, m: k / m, step=lambda h: h * h, sign=1.0, root=1.0):
-    return lambda k, m, h: (1 + sign * step(h) * omega2(k, m)) ** root
+def growth_of(omega2=lambda k, m: k / m, step=lambda h: h * h, sign=1.0, half=1.0, root=1.0):
+    return lambda k, m, h: (1 + half * sign * step(h) * omega2(k, m)) ** root
 
 
 mistakes.terms(
@@ -106,6 +106,7 @@ mistakes.terms(
         },
         "step": {"FIRST_POWER": lambda h: h},
         "sign": {"SHRINKS": -1.0},
+        "half": {"HALF_KEPT": 0.5},
         "root": {"WIDTH_NOT_ENERGY": 0.5},
     },
 )

@@ -54,6 +54,11 @@ mistakes(
     "Your step is 0.",
     "It is a fraction of a second: divide with /, and leave out //, int and round.",
 ).edit("fair_step", {"other / iterations": "other // iterations"})
+mistakes(
+    "WORK_OF_BOTH",
+    "You divide by the iterations of both engines together.",
+    "A makes iterations / h of them in a second: divide by its iterations alone.",
+).edit("fair_step", {"/ iterations": "/ (iterations + other)"})
 
 mistakes.accept(
     "By the passes in a second",
@@ -75,3 +80,4 @@ mistakes.accept(
 @mistakes.more
 def hypotheses():
     yield "fair_step", ("A_FORGOTTEN",), lambda h, iterations, other: h * other
+    yield "fair_step", ("WHOLE_NUMBERS",), lambda h, iterations, other: h / (iterations // other)

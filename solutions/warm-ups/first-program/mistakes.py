@@ -53,7 +53,7 @@ mistakes(
 ).body("euler_step", "return semi_implicit_step(x, v, a, h)")
 mistakes(
     "STEP_MISSING",
-    "The old velocity moves the position, but one of the rates is not multiplied by the step.",
+    "One of the rates is not multiplied by the step.",
     "Both x and v advance by h times their rate.",
 ).body("euler_step", "return x + h * v, v + a")
 mistakes(
@@ -237,67 +237,59 @@ mistakes.accept(
 H = 0.01
 
 
-def with_half_a(x, v, a, h):
-    return x + h * v + 0.5 * h * h * a, v + h * a
+def euler(moved=lambda v, a, h: h * v, faster=lambda a, h: h * a):
+    return lambda x, v, a, h: (x + moved(v, a, h), v + faster(a, h))
 
 
-def velocity_kept(x, v, a, h):
-    return x + h * v, v
+def landing(time=lambda k: k * H, landed=lambda height: height <= 0.0):
+    return lambda heights: next((time(k) for k, height in enumerate(heights) if landed(height)), None)
 
 
-def mean_velocity(x, v, a, h):
-    return x + h * (v + 0.5 * h * a), v + h * a
+def error_at(last=lambda n: n - 1, size=abs):
+    return lambda positions, omega: size(positions[-1] - math.cos(omega * last(len(positions)) * H))
 
 
-def end_counted(positions, omega):
-    return abs(positions[-1] - math.cos(omega * (len(positions) + 1) * H))
+mistakes.terms(
+    "euler_step",
+    euler,
+    {
+        "moved": {"HALF_A_H_SQUARED": lambda v, a, h: h * v + 0.5 * h * h * a},
+        "faster": {"VELOCITY_KEPT": lambda a, h: 0.0, "STEP_MISSING": lambda a, h: a},
+    },
+)
+mistakes.terms(
+    "landing_time",
+    landing,
+    {
+        "time": {"SAMPLE_NOT_TIME": lambda k: k, "LANDING_ONE_LATE": lambda k: (k + 1) * H},
+        "landed": {"GROUND_NOT_INCLUDED": lambda height: height < 0.0},
+    },
+)
+mistakes.terms(
+    "error_at_end",
+    error_at,
+    {
+        "last": {
+            "ONE_STEP_LATE": lambda n: n,
+            "TWO_STEPS_LATE": lambda n: n + 1,
+            "ONE_STEP_EARLY": lambda n: n - 2,
+        },
+        "size": {"SIGN_OF_THE_ERROR": float},
+    },
+)
 
 
-def second_to_last(positions, omega):
-    return abs(positions[-1] - math.cos(omega * (len(positions) - 2) * H))
-
-
-def index(heights):
-    return next((k for k, height in enumerate(heights) if height <= 0.0), None)
-
-
-def one_later(heights):
-    return next(((k + 1) * H for k, height in enumerate(heights) if height <= 0.0), None)
-
-
-def one_reversed(which):
-    return lambda v1, v2: (-v1, v2) if which else (v1, -v2)
-
-
-def with_sign(first, second, k):
-    return second[k][0] - first[k][0]
+def nearest(heights):
+    k = min(range(len(heights)), key=lambda k: abs(heights[k]))
+    return k * H if min(heights) <= 0.0 else None
 
 
 @mistakes.more
 def hypotheses():
-    yield "euler_step", ("HALF_A_H_SQUARED",), with_half_a
-    yield "euler_step", ("HALF_A_H_SQUARED",), mean_velocity
-    yield "euler_step", ("VELOCITY_KEPT",), velocity_kept
-    yield "error_at_end", ("TWO_STEPS_LATE",), end_counted
-    yield "error_at_end", ("ONE_STEP_EARLY",), second_to_last
-    yield "landing_time", ("SAMPLE_NOT_TIME",), index
-    yield "landing_time", ("LANDING_ONE_LATE",), one_later
-    yield "after_contact", ("ONE_REVERSED",), one_reversed(True)
-    yield "after_contact", ("ONE_REVERSED",), one_reversed(False)
+    yield "after_contact", ("ONE_REVERSED",), lambda v1, v2: (-v1, v2)
+    yield "after_contact", ("ONE_REVERSED",), lambda v1, v2: (v1, -v2)
     yield "after_contact", ("EXCHANGED_AND_REVERSED",), lambda v1, v2: (-v2, -v1)
-    yield "gap", ("SIGN_OF_THE_GAP",), with_sign
-
-
-@mistakes.more
-def the_other_way():
-    yield "euler_step", ("STEP_MISSING",), lambda x, v, a, h: (x + v, v + h * a)
     yield "after_contact", ("ASSIGNED_IN_TURN",), lambda v1, v2: (v1, v1)
-
-
-@mistakes.more
-def nearest_of_a_fall_that_ends():
-    def landing_time(heights):
-        nearest = min(range(len(heights)), key=lambda k: abs(heights[k]))
-        return nearest * H if min(heights) <= 0.0 else None
-
-    yield "landing_time", ("NEAREST_TO_THE_GROUND",), landing_time
+    yield "euler_step", ("STEP_MISSING",), euler(moved=lambda v, a, h: v)
+    yield "gap", ("SIGN_OF_THE_GAP",), lambda first, second, k: second[k][0] - first[k][0]
+    yield "landing_time", ("NEAREST_TO_THE_GROUND",), nearest

@@ -75,6 +75,11 @@ mistakes(
     "You take at least one step in each frame, even if its time is not there.",
     "A short frame may have no step: its time stays in the account.",
 ).edit("ticks", {"int(account // h)": "max(1, int(account // h))"})
+mistakes(
+    "REST_ADDED_LATER",
+    "The time left can be longer than a step: you add what was left to what remains of this frame.",
+    "One more step may fit then. Return what remains in the account: account minus steps times h.",
+).edit("ticks", {"account - steps * h": "left + frame % h"})
 
 mistakes.accept(
     "Divides with remainder and returns a list",

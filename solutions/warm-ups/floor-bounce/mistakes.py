@@ -54,6 +54,11 @@ mistakes(
     "A slow ball stays on the floor.",
     "Every ball that moves into the floor bounces, however slow it is.",
 ).edit("after_floor", {"-e * v if v < 0": "0.0 if -0.05 < v < 0 else -e * v if v < 0"})
+mistakes(
+    "ZERO_NOT_TAKEN",
+    "You do not take a restitution of 0 as it is given.",
+    "Python takes 0 for false in `or` and in `if e`. With e = 0 the ball stays on the floor.",
+).edit("after_floor", {"if v < 0": "if e and v < 0"})
 
 mistakes.accept(
     "One formula for both cases",
@@ -90,3 +95,8 @@ mistakes.terms(
         "turn": {"NOT_TURNED_ROUND": 1.0},
     },
 )
+
+
+@mistakes.more
+def one_for_zero():
+    yield "after_floor", ("ZERO_NOT_TAKEN",), bounce(share=lambda e: e or 1.0)

@@ -1,6 +1,7 @@
 """Mistakes in `how-sure`: words beside the programs that they are true of."""
 
 import math
+import statistics
 
 from course.authoring.mistakes import Mistakes
 
@@ -67,6 +68,11 @@ mistakes(
     "Values that are equal count only once in n.",
     "n is the number of all values: len(values).",
 ).edit("standard_error", {"len(values)": "len(set(values))"})
+mistakes(
+    "FROM_THE_MEDIAN",
+    "You measure the distances from the value in the middle, not from the mean.",
+    "The mean is the sum of the values over their number.",
+)
 
 mistakes.accept(
     "Written out",
@@ -95,10 +101,9 @@ mistakes(
 )
 
 
-def error_of(less=1, power=0.5, root=0.5):
+def error_of(less=1, power=0.5, root=0.5, middle=statistics.mean):
     def standard_error(values):
-        n = len(values)
-        mean = sum(values) / n
+        n, mean = len(values), middle(values)
         return (sum((value - mean) ** 2 for value in values) / (n - less)) ** root / n**power
 
     return standard_error
@@ -111,6 +116,7 @@ mistakes.terms(
         "less": {"N_NOT_N_MINUS_ONE": 0},
         "power": {"DIVIDED_BY_N": 1.0, "ONE_VALUE_NOT_THE_MEAN": 0.0},
         "root": {"VARIANCE": 1.0},
+        "middle": {"FROM_THE_MEDIAN": statistics.median},
     },
 )
 
@@ -120,6 +126,8 @@ def factors():
     yield "standard_error", ("POWER_BEFORE_DIVISION",), lambda values: error_of(power=1.0)(values) / 2
     yield "standard_error", ("TWO_STANDARD_ERRORS",), lambda values: 2 * error_of()(values)
     yield "standard_error", ("MEAN_OF_THE_SIZES",), sizes_over_n_minus_one
+    yield "standard_error", ("FROM_THE_MEDIAN",), error_of(middle=statistics.median_high)
+    yield "standard_error", ("FROM_THE_MEDIAN",), error_of(middle=statistics.median_low)
 
 
 def sizes_over_n_minus_one(values):

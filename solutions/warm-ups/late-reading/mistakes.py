@@ -163,9 +163,15 @@ def falls_off(times, values, latency, now):
     return None
 
 
+def one_too_far(times, values, latency, now):
+    place = sum(time + latency <= now for time in times)
+    return values[min(place, len(values) - 1)] if place else None
+
+
 @mistakes.more
 def hypotheses():
     yield "seen", ("INDEX_NOT_VALUE",), index
+    yield "seen", ("ONE_TOO_LATE",), one_too_far
     yield "seen", ("NEAREST_NOT_NEWEST",), nearest_if_any
     yield "seen", ("LAST_FOR_NONE", "ALL_ARRIVED_IS_NONE"), falls_off
     yield from with_terms(
@@ -178,12 +184,3 @@ def hypotheses():
             "none": {"LAST_FOR_NONE": lambda values: values[-1], "FIRST_FOR_NONE": lambda values: values[0]},
         },
     )
-
-
-@mistakes.more
-def one_too_far():
-    def seen(times, values, latency, now):
-        place = sum(time + latency <= now for time in times)
-        return values[min(place, len(values) - 1)] if place else None
-
-    yield "seen", ("ONE_TOO_LATE",), seen

@@ -91,6 +91,11 @@ mistakes(
     "The motor's torque is not used.",
     "Add it to gravity's before you divide.",
 )
+mistakes(
+    "LENGTH_LOST_IN_GRAVITY",
+    "Gravity's part of your result does not depend on the length.",
+    "A longer bar falls more slowly: without a torque it is -1.5 g cos(angle) / l.",
+).edit("angular_acceleration", {"m * g * l": "m * g * l * l"})
 
 mistakes.accept(
     "The moment of inertia by the parallel axis theorem",
@@ -110,9 +115,13 @@ mistakes.accept(
 )
 
 
-def acceleration(inertia=1 / 3, turned=1.0, arm=0.5, turn=math.cos, unit=float, gravity=-1.0, motor=1.0):
+def acceleration(
+    inertia=1 / 3, turned=1.0, arm=0.5, turn=math.cos, unit=float, gravity=-1.0, motor=1.0, pull=float
+):
     return lambda torque, m, l, angle, g=9.81: (
-        turned * (motor * torque + gravity * arm * m * g * l * turn(unit(angle))) / (inertia * m * l * l)
+        turned
+        * (motor * torque + gravity * arm * m * pull(g) * l * turn(unit(angle)))
+        / (inertia * m * l * l)
     )
 
 
@@ -142,5 +151,6 @@ def hypotheses():
             "unit": {"DEGREES": math.radians},
             "gravity": {"GRAVITY_UPWARDS": 1.0, "GRAVITY_FORGOTTEN": 0.0},
             "motor": {"MOTOR_FORGOTTEN": 0.0},
+            "pull": {"G_IGNORED": lambda g: 9.81},
         },
     )

@@ -106,6 +106,11 @@ mistakes(
     "You took the root of the sum, but the uncertainties are not squared.",
     "Square each, add, then take the root.",
 )
+mistakes(
+    "SQUARES_SUBTRACTED",
+    "You subtract squares of the uncertainties.",
+    "Their squares add up, whichever of the two values they belong to.",
+)
 
 mistakes.accept(
     "A norm of three",
@@ -148,6 +153,7 @@ mistakes.terms(
             "DATA_FORGOTTEN": lambda n, i, d: math.hypot(n, i),
             "LARGEST_ONLY": max,
             "NOT_SQUARED": lambda *u: sum(u) ** 0.5,
+            "SQUARES_SUBTRACTED": lambda n, i, d: abs(n * n + i * i - d * d) ** 0.5,
         },
         "reach": {"ONCE": 1.0},
         "middle": {"MEASURED_FIRST": lambda s, m: m - s, "NO_SIGN": lambda s, m: abs(s - m)},

@@ -23,8 +23,6 @@ mistakes(
     "ONE_LESS",
     "The sum is divided by n - 1.",
     "Divide by the number of differences: their own mean plays no part in a root mean square.",
-).body(
-    "rms", "return math.sqrt(sum((s - m) ** 2 for s, m in zip(simulated, measured)) / (len(measured) - 1))"
 )
 mistakes(
     "MEAN_FORGOTTEN",
@@ -35,13 +33,6 @@ mistakes(
     "MEAN_TAKEN_OFF",
     "You took their mean off the differences: that is their standard deviation.",
     "A difference that is always the same counts, too: square the differences themselves.",
-).body(
-    "rms",
-    """
-        differences = [s - m for s, m in zip(simulated, measured)]
-        mean = sum(differences) / len(differences)
-        return math.sqrt(sum((d - mean) ** 2 for d in differences) / len(differences))
-    """,
 )
 mistakes(
     "DIVIDED_AFTER_THE_ROOT",
@@ -83,6 +74,11 @@ mistakes(
         return size(simulated) - size(measured)
     """,
 )
+mistakes(
+    "ONE_LEFT_OUT",
+    "The difference of the first points or that of the last ones does not count.",
+    "The first has the index 0, the last len(measured) - 1: go through all of them.",
+).edit("rms", {"zip(simulated, measured)]": "zip(simulated[1:], measured[1:])]"})
 
 mistakes.accept(
     "By the length of the vector of differences",
@@ -102,9 +98,9 @@ mistakes.accept(
 )
 
 
-def mean_of(number=len, less=0, root=0.5, off=lambda d: 0.0):
+def mean_of(number=len, less=0, root=0.5, off=lambda d: 0.0, part=lambda d: d):
     def rms(simulated, measured):
-        differences = [s - m for s, m in zip(simulated, measured)]
+        differences = part([s - m for s, m in zip(simulated, measured)])
         middle = off(differences)
         return (sum((d - middle) ** 2 for d in differences) / (number(measured) - less)) ** root
 
@@ -119,5 +115,12 @@ mistakes.terms(
         "less": {"ONE_LESS": 1},
         "root": {"ROOT_MISSING": 1.0},
         "off": {"MEAN_TAKEN_OFF": lambda d: sum(d) / len(d)},
+        "part": {"ONE_LEFT_OUT": lambda d: d[:-1]},
     },
 )
+
+
+@mistakes.more
+def first_left_out():
+    yield "rms", ("ONE_LEFT_OUT",), mean_of(part=lambda d: d[1:])
+    yield "rms", ("ONE_LEFT_OUT",), lambda simulated, measured: mean_of()(simulated[:-1], measured[:-1])

@@ -8,12 +8,6 @@ mistakes(
     "NEW_VELOCITY",
     "The position moves with the new velocity.",
     "Use the velocity from before the step for the position. (What you wrote is a method of its own; the lesson comes to it.)",
-).body(
-    "step_ahead",
-    """
-        v = v + h * a
-        return x + h * v, v
-    """,
 )
 mistakes(
     "SCHOOL_FORMULA",
@@ -60,6 +54,11 @@ mistakes(
     "You divided the rates by the step.",
     "In a step of h seconds a value changes by h times its rate.",
 ).edit("step_ahead", {"h * v, v + h * a": "v / h, v + a / h"})
+mistakes(
+    "RATES_SWAPPED",
+    "You move the position with the acceleration, and the velocity with the velocity.",
+    "The velocity is the rate of the position, and the acceleration that of the velocity.",
+).edit("step_ahead", {"h * v, v + h * a": "h * a, v + h * v"})
 
 mistakes.accept(
     "Adds up a list of pairs",

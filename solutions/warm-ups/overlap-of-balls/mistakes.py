@@ -76,6 +76,16 @@ mistakes(
     "The depth is never more than the smaller ball's diameter.",
     "It is r1 + r2 minus the distance, however deep one lies in the other.",
 ).edit("overlap", {"r1 + r2 - math.dist(p, q)": "min(r1 + r2 - math.dist(p, q), 2 * r1, 2 * r2)"})
+mistakes(
+    "AXES_MIXED",
+    "You subtract an x from a y, or a y from an x.",
+    "Subtract x from x and y from y: q[0] - p[0] and q[1] - p[1].",
+)
+mistakes(
+    "COORDINATES_ADDED",
+    "You add the coordinates of the two centres.",
+    "Subtract them: the distance of the centres is math.dist(p, q).",
+)
 
 mistakes.accept(
     "Pythagoras by hand",
@@ -106,6 +116,7 @@ mistakes.terms(
             "DISTANCE_SQUARED": lambda p, q: math.dist(p, q) ** 2,
             "ONE_COORDINATE": lambda p, q: abs(p[0] - q[0]),
             "SIZES_ADDED": lambda p, q: abs(p[0] - q[0]) + abs(p[1] - q[1]),
+            "COORDINATES_ADDED": lambda p, q: math.hypot(p[0] + q[0], p[1] + q[1]),
         },
         "radii": {
             "ONE_RADIUS": max,
@@ -117,13 +128,17 @@ mistakes.terms(
 )
 
 
-@mistakes.more
-def one_radius():
-    yield "overlap", ("ONE_RADIUS_ONLY",), lambda p, q, r1, r2: r2 - math.dist(p, q)
-    yield "overlap", ("ONE_RADIUS_ONLY",), lambda p, q, r1, r2: min(r1, r2) - math.dist(p, q)
+def mixed(i, j):
+    return lambda p, q: math.hypot(p[0] - q[i], p[1] - q[j])
 
 
 @mistakes.more
-def only_across():
-    yield "overlap", ("ONE_COORDINATE",), lambda p, q, r1, r2: r1 + r2 - abs(p[1] - q[1])
+def hypotheses():
+    yield "overlap", ("ONE_RADIUS_ONLY",), depth(radii=lambda a, b: b)
+    yield "overlap", ("ONE_RADIUS_ONLY",), depth(radii=min)
+    yield "overlap", ("ONE_COORDINATE",), depth(lambda p, q: abs(p[1] - q[1]))
     yield "overlap", ("ONE_COORDINATE",), depth(lambda p, q: max(abs(p[0] - q[0]), abs(p[1] - q[1])))
+    for i, j in ((0, 0), (1, 1), (1, 0)):
+        yield "overlap", ("AXES_MIXED",), depth(mixed(i, j))
+        yield "overlap", ("AXES_MIXED",), depth(lambda p, q, right=mixed(i, j): right(q, p))
+    yield "overlap", ("AXES_MIXED",), depth(lambda p, q: math.hypot(p[0] - p[1], q[0] - q[1]))

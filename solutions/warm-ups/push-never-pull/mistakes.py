@@ -54,6 +54,16 @@ mistakes(
     "Where no impulse was applied so far, you apply none.",
     "A first push is a correction too: apply what is wanted, unless the sum would go below zero.",
 ).edit("applied", {"return max(": "return 0.0 if total == 0 else max("})
+mistakes(
+    "SUM_WHERE_IT_FITS",
+    "Where the sum stays above zero you give the new sum.",
+    "Give the change: there all of wanted is applied.",
+)
+mistakes(
+    "WANTED_TURNED",
+    "Where the sum would go below zero you give -wanted.",
+    "Take back what there is: apply -total.",
+)
 
 mistakes.accept(
     "The correction is at least minus the sum",
@@ -73,8 +83,24 @@ mistakes.accept(
 )
 
 
+def correction(fits=lambda total, wanted: wanted, below=lambda total, wanted: -total):
+    return lambda total, wanted: (below if total + wanted < 0 else fits)(total, wanted)
+
+
+mistakes.terms(
+    "applied",
+    correction,
+    {
+        "fits": {"SUM_WHERE_IT_FITS": lambda total, wanted: total + wanted},
+        "below": {
+            "TAKES_WITH_A_PLUS": lambda total, wanted: total,
+            "NOTHING_TAKEN": lambda total, wanted: 0.0,
+            "WANTED_TURNED": lambda total, wanted: -wanted,
+        },
+    },
+)
+
+
 @mistakes.more
-def hypotheses():
-    yield "applied", ("TAKES_WITH_A_PLUS",), lambda total, wanted: total if total + wanted < 0 else wanted
-    yield "applied", ("ONLY_WHAT_IS_LEFT",), lambda total, wanted: max(-total, min(total, wanted))
-    yield "applied", ("NOTHING_TAKEN",), lambda total, wanted: 0.0 if total + wanted < 0 else wanted
+def only_what_is_left():
+    yield "applied", ("ONLY_WHAT_IS_LEFT",), correction(fits=min)

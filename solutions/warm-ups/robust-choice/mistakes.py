@@ -119,8 +119,4 @@ def hypotheses():
     yield "robust", ("COST_NOT_INDEX",), cost
     yield "robust", ("COUNTED_FROM_ONE",), lambda costs: [max(row) for row in costs].index(cost(costs)) + 1
     yield "robust", ("LAST_OF_EQUALS",), last_of_equals
-
-
-@mistakes.more
-def first_world():
     yield "robust", ("LAST_WORLD",), lambda costs: min(range(len(costs)), key=lambda i: costs[i][0])

@@ -74,6 +74,16 @@ mistakes(
     "You took the CFM as one over h (h k + c).",
     "In s/kg it is one over h k + c.",
 ).edit("same_floor", {"1 / whole": "h / (new_h * whole)"})
+mistakes(
+    "SPRING_TIMES_THE_STEP",
+    "You multiply erp / cfm by the old step to get the stiffness of the spring.",
+    "erp / cfm is h k: divide it by h. In Python that is erp / (cfm * h), with brackets.",
+)
+mistakes(
+    "DAMPER_FOR_SPRING",
+    "You took the spring's share of one over the CFM for the damper.",
+    "The damper is what is left of it: (1 - erp) / cfm.",
+)
 
 mistakes.accept(
     "Solves two equations for the spring and the damper",
@@ -120,5 +130,27 @@ mistakes.terms(
             "CFM_SCALED": lambda e, r: 1 / r,
             "CFM_SCALED_WITH_THE_STEP": lambda e, r: r,
         },
+    },
+)
+
+
+def floor_by(spring=lambda e, c, h: e / (c * h), damper=lambda e, c: (1 - e) / c, whole=lambda hk, c: hk + c):
+    def same_floor(erp, cfm, h, new_h):
+        new, c = new_h * spring(erp, cfm, h), damper(erp, cfm)
+        return new / (new + c), 1 / whole(new, c)
+
+    return same_floor
+
+
+mistakes.terms(
+    "same_floor",
+    floor_by,
+    {
+        "spring": {
+            "SPRING_WITHOUT_THE_STEP": lambda e, c, h: e / c,
+            "SPRING_TIMES_THE_STEP": lambda e, c, h: e / c * h,
+        },
+        "damper": {"DAMPER_TAKEN_WHOLE": lambda e, c: 1 / c, "DAMPER_FOR_SPRING": lambda e, c: e / c},
+        "whole": {"CFM_NOT_INVERTED": lambda hk, c: 1 / (hk + c)},
     },
 )

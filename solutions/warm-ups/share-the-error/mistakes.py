@@ -64,6 +64,11 @@ mistakes(
     "You give the prediction the weight 1 and the measurement the share, and divide by both.",
     "The weights are 1 - share and share, which are 1 together.",
 ).body("corrected", "return (predicted + share * measured) / (1.0 + share)")
+mistakes(
+    "CORRECTION_LIMITED",
+    "A large correction is cut off.",
+    "Go the given share of the way, however long it is.",
+).edit("corrected", {"share * (measured - predicted)": "max(-0.1, min(0.1, share * (measured - predicted)))"})
 
 mistakes.accept(
     "Starts from the other end",

@@ -74,6 +74,11 @@ mistakes(
     "distance_in_doubts",
     {"simulated - measured": "simulated - doubt_s", "math.hypot(doubt_s, ": "math.hypot(measured, "},
 )
+mistakes(
+    "SIZES_SUBTRACTED",
+    "You take the sizes of the two results before you subtract.",
+    "Subtract them with their signs, and take the size of the difference.",
+).edit("distance_in_doubts", {"simulated - measured": "abs(simulated) - abs(measured)"})
 
 mistakes.accept(
     "The root of a quotient",

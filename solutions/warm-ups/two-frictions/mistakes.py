@@ -98,8 +98,25 @@ def rules(**wrong):
     return lambda mu1, mu2, rule: (right | wrong)[rule](mu1, mu2)
 
 
+mistakes.terms(
+    "pair_friction",
+    rules,
+    {
+        "product": {
+            "ROOT_OF_THE_PRODUCT": lambda a, b: (a * b) ** 0.5,
+            "LIMITED_TO_ONE": lambda a, b: min(1.0, a * b),
+        },
+        "mean": {
+            "BRACKETS_MISSING": lambda a, b: a + b / 2,
+            "GEOMETRIC_MEAN": lambda a, b: (a * b) ** 0.5,
+            "SUM_NOT_MEAN": lambda a, b: a + b,
+        },
+        "larger": {"SMALLER_OF_TWO": min, "FIRST_FOR_LARGER": lambda a, b: a},
+    },
+)
+
+
 @mistakes.more
 def hypotheses():
-    yield "pair_friction", ("BRACKETS_MISSING",), rules(mean=lambda a, b: a + b / 2)
-    yield "pair_friction", ("ROOT_OF_THE_PRODUCT",), rules(product=lambda a, b: (a * b) ** 0.5)
+    yield "pair_friction", ("LIMITED_TO_ONE",), rules(larger=lambda a, b: min(1.0, max(a, b)))
     yield "pair_friction", ("FIRST_ONLY",), lambda mu1, mu2, rule: mu1

@@ -142,6 +142,16 @@ mistakes(
     "Along x your box moves by the sign of y.",
     "Along x the sign of x counts: the box moves to the side where it is already.",
 ).edit("way_out", {".copysign(along, x": ".copysign(along, y"})
+mistakes(
+    "SIZES_SWAPPED",
+    "Width and height are exchanged.",
+    "The width is along x, the height along y.",
+).around("way_out", "return _right(x, y, height, width)")
+mistakes(
+    "LITTLE_LEFT_ALONE",
+    "You leave boxes alone that overlap a little.",
+    "Every overlap counts, however small: give (0, 0) only where a depth is zero or negative.",
+).edit("way_out", {"along <= 0 or across <= 0": "along <= 0.01 or across <= 0.01"})
 
 mistakes.accept(
     "Tries all four ways",
@@ -176,15 +186,12 @@ def without_sizes(x, y, width, height):
     return (along, 0.0) if along < across else (0.0, across)
 
 
+def without_asking(x, y, width, height):
+    along, across = width - abs(x), height - abs(y)
+    return (math.copysign(along, x), 0.0) if along < across else (0.0, math.copysign(across, y))
+
+
 @mistakes.more
-def no_sizes_and_no_signs():
+def hypotheses():
     yield "way_out", ("NO_SIZE_OF_X", "ALWAYS_FORWARDS"), without_sizes
-
-
-@mistakes.more
-def without_asking():
-    def way_out(x, y, width, height):
-        along, across = width - abs(x), height - abs(y)
-        return (math.copysign(along, x), 0.0) if along < across else (0.0, math.copysign(across, y))
-
-    yield "way_out", ("NOT_ASKED",), way_out
+    yield "way_out", ("NOT_ASKED",), without_asking

@@ -15,8 +15,6 @@ mistakes(
     "AXES_SWAPPED",
     "x and y are swapped, or sine and cosine.",
     "Measured from the x axis, x goes with the cosine.",
-).body(
-    "hand", "return l1 * math.sin(a1) + l2 * math.sin(a1 + a2), l1 * math.cos(a1) + l2 * math.cos(a1 + a2)"
 )
 mistakes(
     "DEGREES",
@@ -27,8 +25,6 @@ mistakes(
     "ELBOW_TURNS_BACK",
     "The elbow turns clockwise.",
     "Both angles are counter-clockwise: add them.",
-).body(
-    "hand", "return l1 * math.cos(a1) + l2 * math.cos(a1 - a2), l1 * math.sin(a1) + l2 * math.sin(a1 - a2)"
 )
 mistakes(
     "ONE_LONG_LINK",
@@ -112,9 +108,14 @@ def stretched(a1, a2, l1, l2):
     return (l1 + l2) * math.cos(a1 + a2), (l1 + l2) * math.sin(a1 + a2)
 
 
+def once_from_the_axis(a1, a2, l1, l2):
+    return l1 * math.cos(a1) + l2 * math.cos(a2), l1 * math.sin(a1) + l2 * math.sin(a1 + a2)
+
+
 @mistakes.more
 def hypotheses():
     yield "hand", ("ONE_LONG_LINK",), stretched
+    yield "hand", ("ELBOW_ONCE_FROM_THE_AXIS",), once_from_the_axis
     yield "hand", ("ANGLE_BETWEEN_THE_LINKS",), hand_of(lambda a1, a2: a1 + a2 - math.pi)
     yield from with_terms(
         "hand",
@@ -124,16 +125,4 @@ def hypotheses():
             "order": {"AXES_SWAPPED": -1},
             "unit": {"DEGREES": math.radians},
         },
-    )
-
-
-@mistakes.more
-def once_from_the_axis():
-    yield (
-        "hand",
-        ("ELBOW_ONCE_FROM_THE_AXIS",),
-        lambda a1, a2, l1, l2: (
-            l1 * math.cos(a1) + l2 * math.cos(a2),
-            l1 * math.sin(a1) + l2 * math.sin(a1 + a2),
-        ),
     )

@@ -165,23 +165,19 @@ def moves_first(mass=lambda m: m, sign=-1.0):
     return swing
 
 
-@mistakes.more
-def other_loops():
-    yield "swing", ("SMALLER_STEPS",), smaller(2)
-    yield "swing", ("SMALLER_STEPS",), smaller(10)
-    yield "swing", ("MASS_LOST",), moves_first(mass=lambda m: 1.0)
-    yield "swing", ("FORCE_AWAY",), moves_first(sign=1.0)
-
-
-@mistakes.more
-def swapped_or_constant():
-    yield "swing", ("VELOCITY_FIRST",), lambda *given: moves_first()(*given)[::-1]
-    yield "swing", ("FORCE_TAKEN_ONCE",), pushed_alike
-
-
 def pushed_alike(x, v, k, m, h, n):
     a = -k / m * x
     for _ in range(n):
         x += h * v
         v += h * a
     return x, v
+
+
+@mistakes.more
+def other_loops():
+    yield "swing", ("SMALLER_STEPS",), smaller(2)
+    yield "swing", ("SMALLER_STEPS",), smaller(10)
+    yield "swing", ("MASS_LOST",), moves_first(mass=lambda m: 1.0)
+    yield "swing", ("FORCE_AWAY",), moves_first(sign=1.0)
+    yield "swing", ("VELOCITY_FIRST",), lambda *given: moves_first()(*given)[::-1]
+    yield "swing", ("FORCE_TAKEN_ONCE",), pushed_alike

@@ -8,8 +8,6 @@ mistakes(
     "LAST_NOT_WORST",
     "Only the last value is compared with the first, so a drift that came back does not count.",
     "Take the largest distance of all.",
-).edit(
-    "worst_drift", {"max(abs(energy - energies[0]) for energy in energies": "abs(energies[-1] - energies[0]"}
 )
 mistakes(
     "LOSSES_UNSEEN",

@@ -26,6 +26,7 @@ AS_TRUE = {
     frozenset({"ERP_KEPT", "CFM_KEPT"}): "KEPT_AS_THEY_ARE",
     frozenset({"CORRECTION_ALONE", "MEASUREMENT_ADDED"}): "BRACKETS_MISSING",
     frozenset({"THICKNESS_TWICE", "TWO_LOOKS"}): "RADIUS_ONCE",
+    frozenset({"SUM_WHERE_IT_FITS", "NOTHING_TAKEN"}): "SUM_NOT_CORRECTION",
 }
 
 

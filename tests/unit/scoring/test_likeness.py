@@ -85,6 +85,13 @@ def test_an_answer_is_compared_with_the_right_one_and_with_what_went_in(actual, 
         ([([1.0, -2.0], [1.0, 2.0]), ([3.0, 4.0], [3.0, 5.0])], "Only the sign of the second of these"),
         ([(4.8, 2.4)], "Here your result is twice the right one."),
         ([(True, 2.4), (True, 3.5)], ""),
+        ([(0.0, 0.2), (0.0, 0.3)], "Each wrong result is 0."),
+        ([(0.0, 0.2), (2.0, 2.9)], "Each wrong result is the right one without its decimals."),
+        ([(0.123, 0.12345), (0.679, 0.67894)], ""),  # of few digits others are rounded, too
+        (
+            [(0.1235, 0.123456), (0.6789, 0.678912)],
+            "Each wrong result is the right one rounded to 4 decimals.",
+        ),
     ],
 )
 def test_of_one_check_s_results_is_said_what_all_have_in_common(pairs, said):
@@ -97,7 +104,8 @@ def test_of_one_check_s_results_is_said_what_all_have_in_common(pairs, said):
     ("body", "said"),
     [
         ("energies.sort()", "Your code changes `energies`, the list that it is given."),
-        ("return 0.25", "For 1 of 5 inputs it is right."),
+        ("return 0.25", "Each wrong result is 0.25."),
+        ("return len(energies) / 7", "For 1 of 5 inputs it is right."),
     ],
 )
 def test_a_warm_up_says_what_its_results_show(body, said):

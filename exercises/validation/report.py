@@ -10,13 +10,7 @@ from course.scoring import kit
 dataset = kit.companion("validation", "dataset")
 twins = kit.companion("validation", "twins")
 
-SPEC = {
-    "rmse_max": 0.06,
-    "bias_max": 0.03,
-    "lag_max_s": 0.012,
-    "coverage_min": 0.85,
-    "coverage_max": 0.99,
-}
+SPEC = {"rmse_max": 0.06, "bias_max": 0.03, "lag_max_s": 0.012, "coverage_min": 0.85, "coverage_max": 0.99}
 
 
 def report(submission):

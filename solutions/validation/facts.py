@@ -33,16 +33,12 @@ def facts(recorded, sim, real, lates, mass):
         "averages": [_average(alone, np.array(w)) for w in (n**0, counts)] if several else [],
         "alone": half([run["lag_s"] for run in alone]) if several else 0.0,
         "other_lags": {},
-        "about": {},
         "own": [run["lag_s"] for run in alone] if several else [],
     }
     if several:
         without = [_measure(pairs[:i] + pairs[i + 1 :], lags) for i in n]
         halves = {key: half([left[key] for left in without]) for key in MEASURES}
         known["intervals"] = {k: (v - halves[k], v + halves[k]) for k, v in known["numbers"].items()}
-        known["about"] = {
-            k: _half_about(v, [left[k] for left in without]) for k, v in known["numbers"].items()
-        }
         known["other_lags"] = lambda: _other_lags(lags, known["used"])
     return known
 
@@ -75,12 +71,6 @@ def error(without):
 def half(without):
     """Half the width of an interval."""
     return float(model.T95[len(without) - 2] * error(without))
-
-
-def _half_about(value, without):
-    """Half the width of an interval by squares about the number."""
-    n = len(without)
-    return float(model.T95[n - 2] * math.sqrt((n - 1) / n * np.sum((np.array(without) - value) ** 2)))
 
 
 def _other_lags(lags, ids):

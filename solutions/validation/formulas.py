@@ -73,11 +73,7 @@ _WRAP = {
     "rest": (("REMAINDER_SIGN", np.fmod),),
     "shift": (("HALF_TURN_OFF", 0.0),),
     "back": (("HALF_TURN_OFF", 0.0),),
-    "gives": (
-        ("WRONG_SIGN", np.negative),
-        ("IN_DEGREES", np.degrees),
-        ("IN_TURNS", lambda e: e / _TURN),
-    ),
+    "gives": (("WRONG_SIGN", np.negative), ("IN_DEGREES", np.degrees), ("IN_TURNS", lambda e: e / _TURN)),
     "unit": (("IN_DEGREES", np.radians), ("IN_DEGREES", np.degrees)),
 }
 
@@ -117,8 +113,11 @@ def _variances(P):
     return np.einsum("nii->ni", P)
 
 
-def _normalised(weights=np.linalg.inv, gives=lambda x, P: x):
-    return lambda err, P: gives(np.einsum("ni,nij,nj->n", err, np.broadcast_to(weights(P), P.shape), err), P)
+def _normalised(weights=np.linalg.inv, by=lambda P: 1, gives=lambda x, P: x):
+    def normalised(err, P):
+        return gives(np.einsum("ni,nij,nj->n", err, np.broadcast_to(weights(P), P.shape), err) / by(P), P)
+
+    return normalised
 
 
 def _flipped(P):
@@ -147,13 +146,14 @@ _NEES = {
         ("VARIANCE_MISREAD", lambda P: _scaled(1 / _variances(P) ** 2)),
         ("VARIANCE_MISREAD", lambda P: _scaled(1 / np.sqrt(_variances(P)))),
         ("VARIANCE_MISREAD", lambda P: _scaled(_variances(P))),
+        ("SUMMED_THEN_SQUARED", lambda P: 1 / np.sqrt(_variances(P)[:, :, None] * _variances(P)[:, None])),
         ("ONE_SIZE_FOR_ALL", _sided(lambda P: np.trace(P, axis1=1, axis2=2))),
         ("ONE_SIZE_FOR_ALL", _sided(lambda P: np.trace(P, axis1=1, axis2=2) / P.shape[1])),
         ("ONE_SIZE_FOR_ALL", _sided(np.linalg.det)),
         ("DETERMINANT_MISSING", lambda P: np.linalg.inv(P) * np.linalg.det(P)[:, None, None]),
     ),
+    "by": (("DIVIDED_BY_D", lambda P: P.shape[1]),),
     "gives": (
-        ("DIVIDED_BY_D", lambda x, P: x / P.shape[1]),
         ("ROOT_TAKEN", lambda x, P: np.sqrt(x)),
         ("HALVED", lambda x, P: x / 2),
         ("HALVED", lambda x, P: np.exp(-x / 2)),
@@ -316,6 +316,7 @@ _ENERGY = {
         ("TO_ANOTHER", lambda e: np.max(np.abs(e))),
         ("TO_ANOTHER", lambda e: abs(np.mean(e))),
         ("TO_ANOTHER", lambda e: np.mean(np.abs(e))),
+        ("TO_ANOTHER", np.mean),
         ("TO_ANOTHER", lambda e: abs(e[-1])),
         ("TO_ANOTHER", np.ptp),
     ),
@@ -331,14 +332,19 @@ _ENERGY = {
 def _forces(
     peaks=lambda sim, real: (np.max(sim), np.max(real)),
     impulses=lambda sim, real, dt: (dt * np.sum(sim), dt * np.sum(real)),
-    relative=lambda key, sim, real: (sim - real) / real,
+    peak=lambda sim, real: (sim - real) / real,
+    impulse=lambda sim, real: (sim - real) / real,
     gives=lambda peak, impulse: {"peak": peak, "impulse": impulse},
 ):
     def contact_force_error(f_sim, f_real, dt):
-        peak = relative("peak", *peaks(f_sim, f_real))
-        return gives(float(peak), float(relative("impulse", *impulses(f_sim, f_real, dt))))
+        return gives(float(peak(*peaks(f_sim, f_real))), float(impulse(*impulses(f_sim, f_real, dt))))
 
     return contact_force_error
+
+
+def _forces_alike(relative=lambda sim, real: (sim - real) / real, **others):
+    """Both numbers made by one rule."""
+    return _forces(peak=relative, impulse=relative, **others)
 
 
 def _until_peak(f, last):
@@ -346,12 +352,17 @@ def _until_peak(f, last):
     return np.sum(f[: np.argmax(f)]) + last * np.max(f)
 
 
-def _in_each(relative):
-    """The same for both numbers, and for one of them alone."""
-    for keys in (("peak", "impulse"), ("peak",), ("impulse",)):
-        yield lambda key, sim, real, keys=keys: relative(sim, real) if key in keys else (sim - real) / real
-
-
+_RELATIVE = (
+    ("DIVIDED_BY_SIM", lambda sim, real: (sim - real) / sim),
+    ("UNSIGNED", lambda sim, real: abs(sim - real) / real),
+    ("WRONG_SIGN", lambda sim, real: (real - sim) / real),
+    ("RATIO", lambda sim, real: sim / real),
+    ("RATIO", lambda sim, real: real / sim),
+    ("IN_PER_CENT", lambda sim, real: 100 * (sim - real) / real),
+    ("NOT_RELATIVE", lambda sim, real: sim - real),
+    ("DIVIDED_BY_BOTH", lambda sim, real: 2 * (sim - real) / (sim + real)),
+    ("DIVIDED_BY_BOTH", lambda sim, real: (sim - real) / max(sim, real)),
+)
 _FORCES = {
     "peaks": (
         ("PEAK_AT_SAME_TIME", lambda sim, real: (sim[np.argmax(real)], np.max(real))),
@@ -369,21 +380,6 @@ _FORCES = {
             for last in (1.0, 0.5, 0.0)
         ),
         ("IMPULSE_OF_PEAK", lambda sim, real, dt: (np.max(sim) * dt, np.max(real) * dt)),
-    ),
-    "relative": tuple(
-        (code, form)
-        for code, relative in (
-            ("DIVIDED_BY_SIM", lambda sim, real: (sim - real) / sim),
-            ("UNSIGNED", lambda sim, real: abs(sim - real) / real),
-            ("WRONG_SIGN", lambda sim, real: (real - sim) / real),
-            ("RATIO", lambda sim, real: sim / real),
-            ("RATIO", lambda sim, real: real / sim),
-            ("IN_PER_CENT", lambda sim, real: 100 * (sim - real) / real),
-            ("NOT_RELATIVE", lambda sim, real: sim - real),
-            ("DIVIDED_BY_BOTH", lambda sim, real: 2 * (sim - real) / (sim + real)),
-            ("DIVIDED_BY_BOTH", lambda sim, real: (sim - real) / max(sim, real)),
-        )
-        for form in _in_each(relative)
     ),
     "gives": (("RETURNS_SWAPPED", lambda peak, impulse: {"peak": impulse, "impulse": peak}),),
 }
@@ -415,7 +411,10 @@ TERMS = {
     "consistency_band": [(_band, _BAND), (exactly, _BAND)],
     "coverage": [(_coverage, _COVERAGE)],
     "energy_error": [(_energy_error, _ENERGY)],
-    "contact_force_error": [(_forces, _FORCES)],
+    "contact_force_error": [
+        (_forces_alike, _FORCES | {"relative": _RELATIVE}),
+        (_forces, _FORCES | {"peak": _RELATIVE, "impulse": _RELATIVE}),
+    ],
 }
 #: Task: (code, function) of wrong ones that are no single term in another form.
 OTHERS = {
@@ -445,7 +444,7 @@ OTHERS = {
         (
             "SIDES_MULTIPLIED",
             lambda y, lo, hi: float(np.mean(np.less_equal(lo, y)) * np.mean(np.less_equal(y, hi))),
-        ),
+        )
     ],
     "energy_error": [
         ("TO_PREVIOUS", _energy_error(lambda e: e - _previous(e), lambda e: np.abs(_previous(e)))),

@@ -404,9 +404,7 @@ mistakes(
     "Divide by abs(E[0]).",
 ).edit("energy_error", {"abs(values[0])": "values[0]"})
 mistakes(
-    "TO_CURRENT",
-    "Your code divides by the energy at each moment.",
-    "Divide by abs(E[0]), always.",
+    "TO_CURRENT", "Your code divides by the energy at each moment.", "Divide by abs(E[0]), always."
 ).edit("energy_error", {"abs(values[0])": "np.abs(values)"})
 mistakes(
     "WHOLE_NUMBERS",
@@ -604,6 +602,12 @@ mistakes(
     "Leave out every run whose id is in calibrated_on before you compute anything.",
     kind="fact",
 ).edit("validate", {' if run["id"] not in sim["calibrated_on"]': ""}, of="held_out_pairs")
+mistakes(
+    "PART_OF_AN_ID",
+    "A run is left out whose id is only a part of one in calibrated_on.",
+    "Compare whole ids. `in` looks for whole ones in a list or a set, and for a part of a text in a text.",
+    kind="fact",
+).edit("validate", {'not in sim["calibrated_on"]': 'not in str(sim["calibrated_on"])'}, of="held_out_pairs")
 mistakes(
     "NOTHING_LEFT",
     "With one run left, or none, your code does not answer as the README says.",
@@ -849,10 +853,7 @@ mistakes(
     """,
 )
 mistakes(
-    "NOT_SORTED",
-    "The reasons are right but not in order.",
-    "Sort them alphabetically.",
-    kind="fact",
+    "NOT_SORTED", "The reasons are right but not in order.", "Sort them alphabetically.", kind="fact"
 ).edit("validate", {'"reasons": reasons': '"reasons": reasons[::-1]'})
 mistakes(
     "RMSE_ALONE_JUDGED",
@@ -1018,7 +1019,7 @@ mistakes(
 mistakes(
     "ROUGH_QUANTILES",
     "The band is roughly right.",
-    "Check the levels, alpha/2 and 1 - alpha/2, and the degrees of freedom, dof * runs. If they are right, find the quantiles more exactly: `course hint validation --task consistency_band` shows ways.",
+    "Check the levels, alpha/2 and 1 - alpha/2, and the degrees of freedom, dof * runs. If they are right, find the quantiles more exactly, of random draws by taking a million: `course hint validation --task consistency_band` shows ways.",
     kind="consequence",
 ).body(
     "consistency_band",
@@ -1168,20 +1169,11 @@ mistakes(
     "An end that lies exactly on its margin counts as outside.",
     "Refuse where lo < least or hi > most, with < and >, not <= and >=.",
     kind="fact",
-).around(
+).edit(
     "validate",
-    """
-        report = _right(sim, real, spec)
-        if report["intervals"] is None:
-            return report
-        (_, rmse), bias = report["intervals"]["rmse"], report["intervals"]["bias"]
-        reasons = set(report["reasons"])
-        if rmse >= spec["rmse_max"]:
-            reasons.add("rmse")
-        if bias[0] <= -spec["bias_max"] or bias[1] >= spec["bias_max"]:
-            reasons.add("bias")
-        return {**report, "reasons": sorted(reasons), "accepted": not reasons}
-    """,
+    {
+        "least <= intervals[key][0] <= intervals[key][1] <= most": "least < intervals[key][0] <= intervals[key][1] < most"
+    },
 )
 mistakes("RAISED").edit(
     "block_bootstrap_ci",
@@ -1285,6 +1277,11 @@ mistakes(
     "VARIANCE_MISREAD",
     "Your code uses only the diagonal, and does not divide by it as it stands.",
     "The diagonal has variances, which are squares already. Use the whole matrix: solve P w = err for w, then sum err * w.",
+)
+mistakes(
+    "SUMMED_THEN_SQUARED",
+    "The components are added up, each over its standard deviation, and their sum is squared.",
+    "Use the whole matrix: solve P w = err for w, then sum err * w.",
 )
 mistakes(
     "INVERTED_TWICE",
@@ -1476,11 +1473,7 @@ mistakes(
     "The result is the logarithm of the ratio.",
     "Return (E - E[0]) / abs(E[0]): a difference, which also works for negative energies.",
 )
-mistakes(
-    "SQUARED",
-    "The result is squared.",
-    "Return the relative difference itself, with its sign.",
-)
+mistakes("SQUARED", "The result is squared.", "Return the relative difference itself, with its sign.")
 mistakes(
     "SUMMED_UP",
     "The result is the running sum of the errors.",
@@ -1650,7 +1643,8 @@ model, formulas, facts = (kit.sibling(__file__, name) for name in ("validation",
 MEASURES = facts.MEASURES
 
 
-_SOME = (MEASURES, ("rmse",), ("bias",), ("coverage",))
+_EXACT = ("rmse", "bias", "coverage")
+_SOME = (MEASURES, *((key,) for key in _EXACT))
 
 
 @mistakes.more
@@ -1662,21 +1656,28 @@ def hypotheses():
         for family, terms in families:
             for term, (code, form) in ((term, entry) for term in terms for entry in terms[term]):
                 yield task, (code,), family(**{term: form})
-    for task, ((family, terms), *_) in TERMS.items():
-        # Two terms wrong at once, each in the first form of its code.
-        firsts = {term: dict(reversed(forms)).items() for term, forms in terms.items()}
-        pairs = [
-            ((code, second), {one: form, other: another})
-            for one, other in itertools.combinations(terms, 2)
-            for (code, form), (second, another) in itertools.product(firsts[one], firsts[other])
-            if code != second
-        ]
-        for codes, wrong in pairs[:: max(1, len(pairs) // _MOST)]:
-            yield task, codes, family(**wrong)
+    yield from (("validate", codes, function) for codes, function in _widths())
+    for task, families in TERMS.items():
+        for family, terms in families:
+            # Two terms wrong at once; of many, each in the first form of its code.
+            pairs = _pairs(terms)
+            if len(pairs) > _FEW:
+                pairs = _pairs({term: tuple(dict(reversed(forms)).items()) for term, forms in terms.items()})
+            for codes, wrong in pairs[:: max(1, math.ceil(len(pairs) / _MOST))]:
+                yield task, codes, family(**wrong)
 
 
-#: Programs with two mistakes that are made for a task, spread evenly over what there is.
-_MOST = 200
+def _pairs(terms):
+    return [
+        ((code, second), {one: form, other: another})
+        for one, other in itertools.combinations(terms, 2)
+        for (code, form), (second, another) in itertools.product(terms[one], terms[other])
+        if code != second
+    ]
+
+
+#: Programs with two mistakes that are made of a family, spread evenly over what there is.
+_FEW, _MOST = 140, 190
 
 
 def _cross_validate(
@@ -1778,13 +1779,14 @@ def _validate(
     number=facts.number,
     pool=_together,
     lag=_lag,
-    half=lambda key, n, rest, *_: facts.half(rest),
+    t=lambda key, n: _t(n),
+    error=lambda key, n, rest, *_: facts.error(rest),
     middle=lambda value, without: value,
     wrong=lambda key, *known: _outside(*known),
     order=sorted,
     few=lambda report: report,
 ):
-    """``half``: of the width of an interval; ``wrong``: whether it speaks against; ``few``: no interval."""
+    """``t``, ``error``: of an interval; ``wrong``: whether it speaks against; ``few``: no interval."""
 
     def validate(sim, real, spec):
         some = pairs(sim, real)
@@ -1805,7 +1807,8 @@ def _validate(
             without = np.array([measure(key, some[:i] + some[i + 1 :]) for i in range(n)])
             alone = np.array([measure(key, [pair]) for pair in some])
             sampled = _sampled(key, some) if key != "lag_s" else 0.0
-            width, centre = half(key, n, without, alone, sampled), middle(value, without)
+            width = t(key, n) * error(key, n, without, alone, sampled, value)
+            centre = middle(value, without)
             intervals[key] = (centre - width, centre + width)
             if wrong(key, value, intervals[key], margins[key]):
                 reasons.append(key.removesuffix("_s"))
@@ -1842,36 +1845,56 @@ def _covered(within):
     return _only("coverage", lambda e, sigma: np.mean(within(e, sigma)))
 
 
-#: (code, half the width): of n runs, of values without each, of each alone, and the error if samples counted.
-_RULES = [
-    *(("JACKKNIFE_FACTOR", lambda n, rest, *_, p=p: _t(n) * _spread(rest) / n**p) for p in (0, 0.5, 1)),
+#: (code, what stands for T95[n - 2]): of n runs.
+_FACTORS = [
+    *(("NOT_STUDENTS_T", lambda n, z=z: z) for z in (1.0, 1.645, 1.96, 2.0, 3.0)),
     *(
-        ("JACKKNIFE_FACTOR", lambda n, rest, *_, by=by: _t(n) * _spread(rest) / math.sqrt((n - 1) * n**by))
-        for by in (0, 1)
-    ),
-    *(
-        ("NOT_STUDENTS_T", lambda n, rest, *_, z=z: z * facts.error(rest))
-        for z in (1.0, 1.645, 1.96, 2.0, 3.0)
-    ),
-    *(
-        ("NOT_STUDENTS_T", lambda n, rest, *_, table=table: table[n - 2] * facts.error(rest))
+        ("NOT_STUDENTS_T", lambda n, table=table: table[n - 2])
         for table in (model.T95[1:], (0.0, *model.T95), (12.706, 4.303, 3.182, 2.776, 2.571))
     ),
-    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone, ddof=1) / math.sqrt(n)),
-    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone, ddof=1)),
-    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone)),
-    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * facts.error(alone)),
+]
+#: (code, error): of n runs, of values without each, of each alone, the error if samples counted, the number.
+_ERRORS = [
+    *(("JACKKNIFE_FACTOR", lambda n, rest, *_, p=p: _spread(rest) / n**p) for p in (0, 0.5, 1)),
+    *(
+        ("JACKKNIFE_FACTOR", lambda n, rest, *_, by=by: _spread(rest) / math.sqrt((n - 1) * n**by))
+        for by in (0, 1)
+    ),
+    ("ABOUT_THE_NUMBER", lambda n, rest, _, own, x: math.sqrt((n - 1) / n * np.sum((rest - x) ** 2))),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, *_: np.std(alone, ddof=1) / math.sqrt(n)),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, *_: np.std(alone, ddof=1)),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, *_: np.std(alone)),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, *_: facts.error(alone)),
     ("ZERO_WIDTH", lambda *_: 0.0),
-    *(("SAMPLES_COUNTED", lambda n, rest, alone, own, z=z: z * own) for z in (1.0, 1.645, 1.96, 2.0)),
-    ("SAMPLES_COUNTED", lambda n, rest, alone, own: _t(n) * own),
+    ("SAMPLES_COUNTED", lambda n, rest, alone, own, _: own),
 ]
 
 
-def _in_some(code, half):
-    """A rule for the width of all intervals, and of one alone; of samples there is no lag."""
-    for some in _SOME:
-        keys = [key for key in some if code != "SAMPLES_COUNTED" or key != "lag_s"]
-        yield lambda key, *known, keys=keys: half(*known) if key in keys else facts.half(known[1])
+def _in_some(rules, usual):
+    """Each rule for the width of all intervals, and of each of three alone; of samples there is no lag."""
+    for code, rule in rules:
+        for keys in (MEASURES if code != "SAMPLES_COUNTED" else _EXACT, *_SOME[1:]):
+            yield (
+                code,
+                lambda key, n, *known, keys=keys, rule=rule: (rule if key in keys else usual)(n, *known),
+            )
+
+
+_WIDTHS = {
+    "t": tuple(_in_some(_FACTORS, _t)),
+    "error": tuple(_in_some(_ERRORS, lambda n, rest, *_: facts.error(rest))),
+}
+
+
+def _widths():
+    """Codes and function: both wrong in the same intervals; where samples count, the factor is that of many."""
+    for some in range(len(_SOME)):
+        for (_, t), (code, error) in itertools.product(
+            *(forms[some :: len(_SOME)] for forms in _WIDTHS.values())
+        ):
+            if code == "SAMPLES_COUNTED" or not some:
+                codes = (code,) if code == "SAMPLES_COUNTED" else (code, "NOT_STUDENTS_T")
+                yield codes, _validate(t=t, error=error)
 
 
 def _judging():
@@ -1948,7 +1971,7 @@ _VERDICT = {
         ("LAG_MEAN_OF_RUNS", lambda pairs: np.mean([_lag([pair]) for pair in pairs])),
         ("LAG_NOT_BEST", lambda pairs: _lag(pairs[:1])),
     ),
-    "half": tuple((code, form) for code, half in _RULES for form in _in_some(code, half)),
+    **_WIDTHS,
     "middle": (("CENTRED_ON_THE_REST", lambda value, without: np.mean(without)),),
     "wrong": tuple(_judging()),
     "few": (
@@ -1958,7 +1981,4 @@ _VERDICT = {
 }
 
 
-TERMS = formulas.TERMS | {
-    "cross_validate": [(_cross_validate, _FOLDS)],
-    "validate": [(_validate, _VERDICT)],
-}
+TERMS = formulas.TERMS | {"cross_validate": [(_cross_validate, _FOLDS)], "validate": [(_validate, _VERDICT)]}

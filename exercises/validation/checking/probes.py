@@ -208,6 +208,17 @@ class Resampled:
         """The resamples: what the statistic was asked about beside the series itself."""
         return [samples for samples in self.asked if not np.array_equal(samples, self.e)]
 
+    @property
+    def values(self):
+        """What it answered about the resamples."""
+        asked = zip(self.asked, self.answers, strict=True)
+        return np.array([answer for samples, answer in asked if not np.array_equal(samples, self.e)])
+
+    @property
+    def ends(self):
+        """The (lo, hi) that came back."""
+        return kit.as_vector(kit.as_tuple(self.inspected.value, ("lo", "hi")), 2, "(lo, hi)")
+
 
 def resample(submission, seed, count=_BOOT, blocks=_N / _BLOCK):
     """Have the submission make a few resamples, and look at them."""
@@ -341,15 +352,10 @@ def _length_of_blocks(drawn):
 
 def of_ends(found):
     """What is wrong with the ends of an interval, given the resampled values, as a code, or None."""
-    ends = kit.attempt(
-        lambda: kit.as_vector(kit.as_tuple(found.inspected.value, ("lo", "hi")), 2, "(lo, hi)")
-    )
-    drawn = [i for i, samples in enumerate(found.asked) if not np.array_equal(samples, found.e)]
-    values = np.array([found.answers[i] for i in drawn])
-    whole = float(np.mean(found.e**2))
-    if ends is None or len(drawn) < 3 or _normal(ends, values, whole):
+    ends, whole = kit.attempt(lambda: found.ends), float(np.mean(found.e**2))
+    if ends is None or len(found.drawn) < 3 or _normal(ends, found.values, whole):
         return None
-    means = np.array([np.mean(found.asked[i]) for i in drawn])
+    values, means = found.values, np.array([np.mean(samples) for samples in found.drawn])
     a = _ALPHA
     levels = [
         (None, a / 2, 1 - a / 2),
@@ -409,10 +415,8 @@ def _quantiles(ends, values, low, high):
     ordered = np.sort(values)
     for end, share in zip(ends, (low, high), strict=True):
         place = share * (len(ordered) - 1)
-        least, most = (
-            ordered[max(0, math.floor(place - 0.6))],
-            ordered[min(len(ordered) - 1, math.ceil(place + 0.6))],
-        )
+        least = ordered[max(0, math.floor(place - 0.6))]
+        most = ordered[min(len(ordered) - 1, math.ceil(place + 0.6))]
         slack = 1e-9 * (abs(least) + abs(most))
         if not least - slack <= end <= most + slack:
             return False
@@ -428,15 +432,10 @@ def of_interval(submission, seed, found=None, *, ends_first=False):
     """
     found = found or resample(submission, seed)
     code = of_ends(found) or of_resamples(found) if ends_first else of_resamples(found) or of_ends(found)
-    if code in {
-        None,
-        "ONE_SIDED",
-        "ALPHA_AT_ONE_END",
-        "LEVEL_FOR_ALPHA",
-        "WIDTH_SCALED",
-    }:  # few values are near each other: ask for more
+    # Few values are near each other: ask for more.
+    if code in {None, "ONE_SIDED", "ALPHA_AT_ONE_END", "LEVEL_FOR_ALPHA", "WIDTH_SCALED"}:
         many = resample(submission, seed, 10 * _BOOT)
-        width, narrow = (kit.attempt(lambda some=some: _width(some)) for some in (found, many))
+        width, narrow = (kit.attempt(lambda some=some: np.diff(some.ends)[0]) for some in (found, many))
         picked = kit.attempt(lambda: _of_picked(many)) if code in {None, "WIDTH_SCALED"} else None
         if picked:
             code = picked
@@ -449,21 +448,12 @@ def of_interval(submission, seed, found=None, *, ends_first=False):
 
 def _of_picked(found):
     """Which of many resampled values the ends are, if they are picked as they came or for one alpha."""
-    ends = kit.as_vector(kit.as_tuple(found.inspected.value, ("lo", "hi")), 2, "(lo, hi)")
-    asked = zip(found.asked, found.answers, strict=True)
-    values = np.array([answer for samples, answer in asked if not np.array_equal(samples, found.e)])
+    ends, values = found.ends, found.values
     places = len(values) * np.array([_ALPHA / 2, 1 - _ALPHA / 2])
-    if all(
-        np.any(np.abs(np.flatnonzero(values == end) - place) < 1.5)
-        for end, place in zip(ends, places, strict=True)
-    ):
+    pairs = zip(ends, places, strict=True)
+    if all(np.any(np.abs(np.flatnonzero(values == end) - place) < 1.5) for end, place in pairs):
         return "ENDS_UNSORTED"
     return "FIXED_LEVELS" if _quantiles(ends, values, 0.025, 0.975) else None
-
-
-def _width(found):
-    lo, hi = kit.as_vector(kit.as_tuple(found.inspected.value, ("lo", "hi")), 2, "(lo, hi)")
-    return hi - lo
 
 
 # -- cross-validation -----------------------------------------------------------------------------------

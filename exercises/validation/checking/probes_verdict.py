@@ -40,7 +40,6 @@ class Facts:
         alone: half the width of the lag's interval, with each run alone in the place of all but one.
         other_lags: by other rules, the lags that they give, each with half the width that its interval would
             have; or what computes them, for only a wrong lag asks.
-        about: half the widths of the intervals, with the number in the place of the mean of all but one.
         own: the lags of the runs, each by itself.
     """
 
@@ -52,7 +51,6 @@ class Facts:
     averages: list[list[float]]
     alone: float
     other_lags: OtherLags | Callable[[], OtherLags] = field(default_factory=dict)
-    about: dict[str, float] = field(default_factory=dict)
     own: list[float] = field(default_factory=list)
 
     def by_other_rules(self):
@@ -86,7 +84,9 @@ def of_used(used, report, sim, real, right):
     """Why the wrong runs are listed: they were used, too, or the numbers are those of the right ones."""
     if right.numbers is not None and any(_close(report, {key: right.numbers[key] for key in _EXACT})):
         return named("OTHER_RUNS_LISTED")
-    fitted = set(sim["calibrated_on"])
+    fitted, lost = set(sim["calibrated_on"]), set(right.used) - set(used)
+    if lost and set(used) < set(right.used) and all(any(run in name for name in fitted) for run in lost):
+        return named("PART_OF_AN_ID")
     looks = any(any(_close(report, _numbers(sim, real, ids))) for ids in (set(used), fitted))
     return named("CALIBRATION_RUNS_SCORED") if looks and set(used) & fitted else None
 
@@ -197,7 +197,6 @@ def of_interval(key, ends, right):
         t = _T95[n - 2]
         looks = [
             ("ZERO_WIDTH", 0.0),
-            ("ABOUT_THE_NUMBER", right.about.get(key, -right.half(key)) / right.half(key)),
             *(("JACKKNIFE_FACTOR", x / (n - 1)) for x in (math.sqrt(n), 1.0)),
             *(("JACKKNIFE_FACTOR", x) for x in (math.sqrt(n / (n - 1)), 1 / math.sqrt(n - 1), math.sqrt(n))),
             *(

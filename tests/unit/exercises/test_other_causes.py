@@ -74,7 +74,7 @@ TOLD = {
         "verdict_ends_not_covered": {None},
         "verdict_lists_what_both_have": {"OTHER_RUNS_LISTED", "WRONG_SIGN"},
         "verdict_pairs_what_is_left": {"MATCHED_BY_POSITION"},
-        "verdict_part_of_an_id": {None},
+        "verdict_part_of_an_id": {"PART_OF_AN_ID"},
         "verdict_spread_about_the_number": {"ABOUT_THE_NUMBER"},
         "wrap_ten_turns": {None},
     },

@@ -66,18 +66,17 @@ def one_line(text: str, limit: int | None = None) -> str:
     return _UNUSUAL.sub(_spelled_out, text[:limit])[:limit]
 
 
-def quoted(name: str, most: int = 80) -> str:
+def quoted(name: str) -> str:
     """A stranger's name within a sentence of ours, of which it must not look a part: in quotes, on one line.
 
-    Args:
-        most: characters; of a longer name the middle is left out.
+    Of more than 80 characters the middle is left out.
     """
-    return repr(name if len(name) <= most else f"{name[: most - 23]}...{name[-20:]}")
+    return repr(name if len(name) <= 80 else f"{name[:57]}...{name[-20:]}")
 
 
-def printable(text: str, limit: int | None = None) -> str:
-    """The same, of text that is shown as lines of its own: line ends and tabs stay."""
-    return _UNUSUAL_IN_LINES.sub(_spelled_out, text[:limit])[:limit]
+def printable(text: str) -> str:
+    """Text that is shown as lines of its own: line ends and tabs stay; else as ``one_line``."""
+    return _UNUSUAL_IN_LINES.sub(_spelled_out, text)
 
 
 def steady(text: str) -> str:

@@ -81,16 +81,16 @@ class Terminal:
             time.sleep(0.1)
         pytest.fail(f"{words} did not appear on:\n{self.screen()}")
 
-    def wait_until_gone(self, word: str, seconds: float = 40.0) -> None:
+    def wait_until_gone(self, word: str) -> None:
         """Until the screen no longer shows this."""
-        until = time.monotonic() + seconds
+        until = time.monotonic() + 40.0
         while word in (screen := self.screen()):
             assert time.monotonic() < until, screen
             time.sleep(0.1)
 
-    def wait_for_other(self, screen: str, seconds: float = 40.0) -> str:
+    def wait_for_other(self, screen: str) -> str:
         """The screen, once it is another one and still."""
-        until = time.monotonic() + seconds
+        until = time.monotonic() + 40.0
         while (shown := self.still()) == screen:
             assert time.monotonic() < until, shown
         return shown

@@ -25,11 +25,11 @@ def findings(rows: Sequence[Row]) -> tuple[str, ...]:
     return tuple(sentence for sentence in said if sentence)
 
 
-def _of(rows: Iterable[Row], scenario: str, setting: Setting, dt: float = DT) -> dict[str, Row]:
+def _of(rows: Iterable[Row], scenario: str, setting: Setting) -> dict[str, Row]:
     """The rows of a scenario by engine; measured rows come before those of the reference."""
     found: dict[str, Row] = {}
     for row in rows:
-        if row.scenario == scenario and row.setting == setting and math.isclose(row.dt, dt):
+        if row.scenario == scenario and row.setting == setting and math.isclose(row.dt, DT):
             found.setdefault(row.engine, row)
     return found
 

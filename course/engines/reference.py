@@ -24,13 +24,12 @@ def load() -> Reference:
         return Reference(format_version=FORMAT_VERSION, measured="", machine=Machine("", "", 0, ""), rows=())
 
 
-def row(engine: str, scenario: str, setting: Setting, dt: float = DT) -> Row:
+def row(engine: str, scenario: str, setting: Setting) -> Row:
     for one in load().rows:
-        if (one.engine, one.scenario, one.setting) == (engine, scenario, setting) and math.isclose(
-            one.dt, dt
-        ):
+        same = (one.engine, one.scenario, one.setting) == (engine, scenario, setting)
+        if same and math.isclose(one.dt, DT):
             return one
-    raise LookupError(f"The reference has no {engine}, {scenario}, {setting}, {dt}.")
+    raise LookupError(f"The reference has no {engine}, {scenario}, {setting}, {DT}.")
 
 
 def encoded(comparison: Comparison, measured: str) -> bytes:

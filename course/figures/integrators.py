@@ -19,7 +19,7 @@ from course.physics.systems import Oscillator
 
 #: What the figures show and their captions quote.
 PHASE_Z, PHASE_STEPS = 0.85, 120
-ENERGY_Z = 0.5
+ENERGY_Z, ENERGY_STEPS = 0.5, 3000
 
 _OMEGA = 2.0  # rad/s
 _SPRING = Oscillator(omega=_OMEGA)
@@ -68,18 +68,18 @@ def phase_portraits() -> Figure:
     return title(figure, "Two methods keep a spring on a closed curve; two do not")
 
 
-def _worst(method: str, z: float, n: int) -> Array:
+def _worst(method: str, n: int = ENERGY_STEPS) -> Array:
     """The largest relative energy error of the first 1, 2, ... n steps."""
-    path = _spring_path(method, z, n)
+    path = _spring_path(method, ENERGY_Z, n)
     return np.maximum.accumulate(np.abs(relative_change(energy(_SPRING, path.q, path.v))))[1:]
 
 
-def crossing(z: float = ENERGY_Z, n: int = 3000) -> int:
+def crossing() -> int:
     """After how many steps RK4's energy error is larger than any of Verlet's."""
-    return int(np.argmax(_worst("rk4", z, n) > z * z / 4)) + 1
+    return int(np.argmax(_worst("rk4") > ENERGY_Z**2 / 4)) + 1
 
 
-def energy_error(z: float = ENERGY_Z, n: int = 3000) -> Figure:
+def energy_error() -> Figure:
     """Largest relative energy error so far over the number of steps, both axes logarithmic."""
     figure, (axes,) = new_figure(4.0)
     labels = {
@@ -88,18 +88,20 @@ def energy_error(z: float = ENERGY_Z, n: int = 3000) -> Figure:
         "velocity_verlet": (2.2, 1.05e-1),
         "rk4": (14, 1.2e-3),
     }
-    steps = np.arange(1, n + 1)
+    steps = np.arange(1, ENERGY_STEPS + 1)
     for method, place in labels.items():
         look = METHODS[method]
-        worst = _worst(method, z, 60 if method == "explicit_euler" else n)
+        worst = _worst(method, 60) if method == "explicit_euler" else _worst(method)
         axes.plot(steps[: worst.size], worst, color=look.color, linestyle=look.line)
         axes.text(*place, look.name, color=look.ink, fontweight="bold")
-    met = crossing(z, n)
-    ring(axes, met, z * z / 4)
+    met, highest = crossing(), ENERGY_Z**2 / 4
+    ring(axes, met, highest)
     told = f"after {met} steps (about 18/z⁴)\nVerlet has the smaller error"
-    note(axes, told, (met, z * z / 4), (met * 0.75, 6e-3))
-    axes.set(xscale="log", yscale="log", xlim=(1, n), ylim=(1e-4, 1e2))
-    axes.set(xlabel=f"steps taken (step × ω = {z:g})", ylabel="largest energy error so far (share of E₀)")
+    note(axes, told, (met, highest), (met * 0.75, 6e-3))
+    axes.set(xscale="log", yscale="log", xlim=(1, ENERGY_STEPS), ylim=(1e-4, 1e2))
+    axes.set(
+        xlabel=f"steps taken (step × ω = {ENERGY_Z:g})", ylabel="largest energy error so far (share of E₀)"
+    )
     return title(figure, "Verlet's energy error stops growing; that of Runge-Kutta never does")
 
 
@@ -115,7 +117,7 @@ def error_against_step() -> Figure:
     for method, (x, y, slope) in labels.items():
         look = METHODS[method]
         doublings = 12 if method == "rk4" else 9
-        hs, errors = _errors_at_end(method, 20 * 2 ** np.arange(doublings), 5.0)
+        hs, errors = _errors_at_end(method, 20 * 2 ** np.arange(doublings))
         axes.plot(hs, errors, color=look.color, linestyle=look.line, marker=look.marker)
         axes.text(x, y, f"{look.name}: {slope}", color=look.ink, fontweight="bold")
     note(axes, "round-off: from here\nsmaller steps do not help", (2.44e-4, 5e-15), (7e-4, 1e-15))
@@ -124,12 +126,13 @@ def error_against_step() -> Figure:
     return title(figure, "Halve the step and the error falls 2, 2, 4 or 16 times, down to round-off")
 
 
-def _errors_at_end(method: str, counts: NDArray[np.int_], t_end: float) -> tuple[Array, Array]:
-    """Steps (s) and the distance from the exact (q, v / omega) at t_end (m) for each number of steps.
+def _errors_at_end(method: str, counts: NDArray[np.int_]) -> tuple[Array, Array]:
+    """Steps (s) and the distance from the exact (q, v / omega) after 5 s (m) for each number of steps.
 
     All steps advance together, one spring for each: the methods work element by element, so ``h`` may be an
     array. A spring is read when its own number of steps is done.
     """
+    t_end = 5.0
     hs = t_end / counts
     state = State.at_rest(np.ones(counts.size))
     step: Any = hs

@@ -36,13 +36,13 @@ def seconds(command: list[str]) -> float:
     return time.perf_counter() - start
 
 
-def help_page(rounds: int = 20) -> None:
+def help_page() -> None:
     """Both programs print their help in full colour, which is what makes typer load rich."""
     ratios = []
     with tempfile.TemporaryDirectory() as folder:
         bare = Path(folder) / "bare.py"
         bare.write_text(BARE, "utf-8")
-        for _ in range(rounds):
+        for _ in range(20):
             ours = seconds([sys.executable, "-m", "course", "--help"])
             theirs = seconds([sys.executable, str(bare), "--help"])
             ratios.append(ours / theirs)

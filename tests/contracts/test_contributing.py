@@ -27,9 +27,9 @@ WRONG = "\n".join(
 )
 
 
-def blocks(kind, language="python"):
+def blocks(kind):
     """The blocks of one kind, in order."""
-    return re.findall(rf"^```{language} {kind}\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
+    return re.findall(rf"^```python {kind}\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 
 
 def checks():

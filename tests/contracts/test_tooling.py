@@ -12,9 +12,9 @@ ROOT = Path(__file__).parents[2]
 _LINT_IMPORTS = "import sys; from importlinter.cli import lint_imports_command as run; sys.exit(run())"
 
 
-def _run(*command, cwd=ROOT):
+def _run(*command):
     return subprocess.run(
-        [sys.executable, *command], cwd=cwd, capture_output=True, text=True, check=False, timeout=300
+        [sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=False, timeout=300
     )
 
 

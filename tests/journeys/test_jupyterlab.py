@@ -264,10 +264,10 @@ def test_the_sandbox_moves_and_a_throw_changes_a_path(open_notebook):
     page.wait_for_timeout(500)  # the bodies are drawn in the frame after
     # Time stands: the tip of an arrow sets a velocity of 2 m/s for each metre.
     x, y = _start("head-on", "left-puck")
-    page.mouse.click(*_pixel(canvas, "head-on", x, y))
-    page.mouse.move(*_pixel(canvas, "head-on", x + 1.0, y))
+    page.mouse.click(*_pixel(canvas, x, y))
+    page.mouse.move(*_pixel(canvas, x + 1.0, y))
     page.mouse.down()
-    page.mouse.move(*_pixel(canvas, "head-on", x, y + 0.5), steps=8)
+    page.mouse.move(*_pixel(canvas, x, y + 0.5), steps=8)
     shot(page, "sandbox-dragging", "canvas.world")
     page.mouse.up()
     widget.locator(".body summary", has_text=re.compile(r"left puck, 1 kg: (0\.9|1\.0)")).wait_for()
@@ -348,10 +348,10 @@ def _start(scene_id, name):
     return float(shown.x[index]), float(shown.y[index])
 
 
-def _pixel(canvas, scene_id, x, y):
-    """Where a place of a scene is on the page."""
+def _pixel(canvas, x, y):
+    """Where a place of the scene is on the page."""
     box = canvas.bounding_box()
-    left, bottom, right, top = choose(scene_id).scene.view
+    left, bottom, right, top = choose("head-on").scene.view
     scale = min(box["width"] / (right - left), box["height"] / (top - bottom))
     return (
         box["x"] + box["width"] / 2 + (x - (left + right) / 2) * scale,

@@ -38,7 +38,6 @@ COLUMNS = (
     "student", "name", "email", "login", "canvas_id", "sis_user_id", "section", "moodle_key",
     "extension_days",
 )  # fmt: skip
-_MAX_BYTES = 20 << 20
 #: The columns that a plain folder may be called after, and where each of a download's keys is looked for.
 _FOLDER = ("student", "canvas_id", "sis_user_id", "login", "moodle_key", "email", "name")
 _DOWNLOAD = {

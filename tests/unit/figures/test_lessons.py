@@ -34,7 +34,7 @@ def test_explicit_euler_grows_at_every_step():
     [("explicit_euler", 1), ("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)],
 )
 def test_errors_drawn_have_the_slopes_written_beside_them(method, order):
-    hs, errors = integrators._errors_at_end(method, np.array([640, 1280, 2560]), 5.0)
+    hs, errors = integrators._errors_at_end(method, np.array([640, 1280, 2560]))
     assert convergence_order(hs, errors) == pytest.approx(order, abs=0.05)
 
 

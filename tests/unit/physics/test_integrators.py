@@ -49,7 +49,8 @@ DISSIPATIVE = [
 ]
 
 
-def measured_order(stepper, system, q0, v0, span=1.3, t0=0.4):
+def measured_order(stepper, system, q0, v0):
+    span, t0 = 1.3, 0.4
     first = {1: 128, 2: 32, 4: 16}[stepper.order]
     times = t0 + span * np.array([0.25, 0.5, 0.75, 1.0])
     q_true, v_true = exact.reference(system, q0, v0, times, t0)

@@ -33,18 +33,17 @@ def _check(code, status="fail", **fields):
     return ("check", {**data, "fingerprint": code, "checks": checks, **fields})
 
 
-def _hint(code, index=0, task="double"):
-    return ("hint", {"task": task, "index": index, "fingerprint": code})
-
+#: A hint that was given for FIRST.
+_HINT = ("hint", {"task": "double", "index": 0, "fingerprint": FIRST})
 
 #: What happened -> the events, and whether the next hint is due.
 HINTS = {
     "nothing": ([], False),
     "a check of the untouched stub": ([_check(STUB)], False),
     "a failed check of changed code": ([_check(FIRST)], True),
-    "a hint, and the same code again": ([_check(FIRST), _hint(FIRST), _check(FIRST)], False),
-    "a hint, and code changed since": ([_check(FIRST), _hint(FIRST), _check(SECOND)], True),
-    "other code, but before the last hint": ([_check(SECOND), _check(FIRST), _hint(FIRST)], False),
+    "a hint, and the same code again": ([_check(FIRST), _HINT, _check(FIRST)], False),
+    "a hint, and code changed since": ([_check(FIRST), _HINT, _check(SECOND)], True),
+    "other code, but before the last hint": ([_check(SECOND), _check(FIRST), _HINT], False),
     "a check that passed": ([_check(FIRST, status="pass")], False),
     "a check that passed, and the stub again": ([_check(FIRST, status="pass"), _check(STUB)], False),
     "a file that could not run": ([_check(FIRST, state="ungradable", checks=[])], False),

@@ -12,9 +12,9 @@ from course.sandbox.world.world import World
 SIZE = (52, 19)
 
 
-def pictured(scene, *, colour=True, size=SIZE):
+def pictured(scene, *, colour=True):
     world = World(choose(scene).scene)
-    return world, Picture(world.parts, Camera.fit(world.scene.view, *size), colour=colour)
+    return world, Picture(world.parts, Camera.fit(world.scene.view, *SIZE), colour=colour)
 
 
 def text(cells):

@@ -100,9 +100,7 @@ class Engines(Envelope, tag="course.engines/1", frozen=True, kw_only=True):
 
 
 #: Of the table: what is a single value.
-_COLUMNS = [
-    name for name in EngineRow.__struct_fields__ if name not in {"options", "why", "samples", "details"}
-]
+_COLUMNS = [one for one in EngineRow.__struct_fields__ if one not in {"options", "why", "samples", "details"}]
 
 
 app = group(COMMANDS["engines"].summary)
@@ -126,9 +124,7 @@ def list_engines() -> int:
         version = f"{state.package} {state.version}" if state.version else "not installed"
         console.item(state.id, f"{state.name}; {version}; {state.licence}; {state.about}", width=8)
         if not state.usable:
-            console.line(
-                f"{state.missing}: {state.command}" if state.command else f"{state.missing}.", indent=12
-            )
+            console.line(f"{state.missing}{f': {state.command}' if state.command else '.'}", indent=12)
     console.heading("Scenarios")
     for scenario in SCENARIOS.values():
         console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)

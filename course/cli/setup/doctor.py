@@ -206,11 +206,8 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
     except CourseError as error:
         return root, repaired, f"{error.message} {error.help}"
     except OSError as error:
-        return (
-            root,
-            repaired,
-            f"{root} cannot be written ({error.strerror}); checks run, and nothing is recorded.",
-        )
+        trouble = f"{root} cannot be written ({error.strerror}); checks run, and nothing is recorded."
+        return root, repaired, trouble
     return root, repaired, None
 
 

@@ -7,6 +7,6 @@ if __name__ == "__main__":
     # file of theirs called numpy.py or pytest.py must not become part of the trusted side.
     if not sys.flags.safe_path and sys.path:
         del sys.path[0]
-    from course.cli.frame.app import main
+    from course.cli import main
 
     main()

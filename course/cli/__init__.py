@@ -4,6 +4,17 @@
 ``--json`` prints) and its screens. A room is imported when one of its commands is run.
 """
 
-from course.cli.frame.app import main
+import signal
+from typing import NoReturn
 
-__all__ = ["main"]
+
+def main() -> NoReturn:
+    """Load the program and run it. Ctrl-C while it is still being loaded ends it without a word."""
+    hears = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if hears:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from course.cli.frame import app
+
+    if hears:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    app.main()

@@ -100,9 +100,7 @@ class Engines(Envelope, tag="course.engines/1", frozen=True, kw_only=True):
 
 
 #: Of the table: what is a single value.
-_COLUMNS = [
-    name for name in EngineRow.__struct_fields__ if name not in {"options", "why", "samples", "details"}
-]
+_COLUMNS = [one for one in EngineRow.__struct_fields__ if one not in {"options", "why", "samples", "details"}]
 
 
 app = group(COMMANDS["engines"].summary)
@@ -124,11 +122,9 @@ def list_engines() -> int:
     console.heading("Engines")
     for state in states:
         version = f"{state.package} {state.version}" if state.version else "not installed"
-        facts = f"{state.name}; {version}; {state.licence}; {state.about}"
-        console.item(state.id, facts, width=8)
+        console.item(state.id, f"{state.name}; {version}; {state.licence}; {state.about}", width=8)
         if not state.usable:
-            trouble = state.missing if not state.version and state.command else f"{state.missing}. "
-            console.line(f"{trouble}: {state.command}" if state.command else trouble.rstrip(), indent=12)
+            console.line(f"{state.missing}{f': {state.command}' if state.command else '.'}", indent=12)
     console.heading("Scenarios")
     for scenario in SCENARIOS.values():
         console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)
@@ -265,8 +261,7 @@ def _show(console: Console, comparison: Comparison, findings: Sequence[str]) -> 
             console.line(text)
     for state in comparison.engines:
         if state.version is None:
-            command = f": {state.command}" if state.command else "."
-            console.line(f"{state.name}: {state.missing}{command}")
+            console.line(f"{state.name}: {state.missing}{f': {state.command}' if state.command else '.'}")
     _origins(console, comparison)
     if findings:
         console.heading("What this shows")
@@ -305,8 +300,7 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
             if not origin and (engine, True) in found:
                 continue  # what has a reference is not listed as missing too
             name = ENGINES[engine].name + (", reference" if origin else "")
-            well_set = _tuned(cells, rows, engine, dt)
-            lines.append((name, *step, cells.get(DEFAULT, ""), well_set))
+            lines.append((name, *step, cells.get(DEFAULT, ""), _tuned(cells, rows, engine, dt)))
     heads = ("Engine", *(["Step"] if len(steps) > 1 else []), "As it comes", "Well set")
     console.table(heads, lines)
     if console.plain and not console.quiet:

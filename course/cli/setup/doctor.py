@@ -167,8 +167,7 @@ def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
     fixes = []
     for group, items in groups.items():
         names = ", ".join(item.name for item in items)
-        verb = "are" if len(items) > 1 else "is"
-        missing = f"{names} {verb} missing"
+        missing = f"{names} {'are' if len(items) > 1 else 'is'} missing"
         what = f"Optional ({group}): {missing}." if group else f"{missing} or too old."
         fixes.append(Fix(what, "pip install " + " ".join(f"'{item.requirement}'" for item in items)))
     return tuple(fixes)
@@ -207,8 +206,8 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
     except CourseError as error:
         return root, repaired, f"{error.message} {error.help}"
     except OSError as error:
-        why = error.strerror or error
-        return root, repaired, f"{root} cannot be written ({why}); checks run, and nothing is recorded."
+        trouble = f"{root} cannot be written ({error.strerror}); checks run, and nothing is recorded."
+        return root, repaired, trouble
     return root, repaired, None
 
 
@@ -274,7 +273,6 @@ def _spellings(text: str) -> set[str]:
 def _places() -> list[tuple[str, str]]:
     """Folders and their replacements, the innermost first."""
     installed = sysconfig.get_paths()
-    package = Path(__file__).resolve().parents[3]
     found = {
         str(Path.home()): "~",
         tempfile.gettempdir(): "<temporary>",
@@ -282,7 +280,7 @@ def _places() -> list[tuple[str, str]]:
         sys.prefix: "<python>",
         installed["purelib"]: "<packages>",
         str(cwd()): "<here>",
-        str(package): "<course>",
+        str(Path(__file__).resolve().parents[3]): "<course>",
     }
     found |= {os.path.realpath(place): name for place, name in found.items()}
     kept = [(place, name) for place, name in found.items() if len(Path(place).parts) > 1]

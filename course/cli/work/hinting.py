@@ -239,7 +239,7 @@ def reflect(
     if answer is not None:
         said = _read(answer)
     elif not said and console.interactive:
-        said = _typed(here, chosen, rubric.least_words, draft)
+        said = _typed(console, here, chosen, rubric.least_words, draft)
     if said:
         words = len(said.split())
         if words < rubric.least_words:
@@ -313,9 +313,8 @@ def _read(path: Path) -> str:
     return data.decode("utf-8", errors="replace").strip()
 
 
-def _typed(here: Here, chosen: Exercise, least: int, draft: str) -> str:
+def _typed(console: Console, here: Here, chosen: Exercise, least: int, draft: str) -> str:
     """What is typed after a draft; each line is kept at once, for whoever is interrupted."""
-    console = current()
     console.note(f"Write your answer; an empty line ends it, once it has {least} words. Each line is kept.")
     if draft:
         console.line(f"You began:\n{draft}\nGo on from there.")

@@ -378,16 +378,14 @@ def compare(
         UsageError: the formula, or one in the texts, has no value for these parameters.
     """
     theory = evaluate(asked.theory, values)
-    agree = abs(simulation - theory) <= max(asked.agrees * abs(theory), asked.agrees_abs)
-    right = None if guess is None else _is_right(guess, theory) or _is_right(guess, simulation)
     compared = Comparison(
         question=fill(asked.question, values),
         unit=asked.unit,
         guess=guess,
         theory=theory,
         simulation=simulation,
-        guess_right=right,
-        agree=agree,
+        guess_right=None if guess is None else _is_right(guess, theory) or _is_right(guess, simulation),
+        agree=abs(simulation - theory) <= max(asked.agrees * abs(theory), asked.agrees_abs),
         verdict="",
         why=fill(asked.why, values),
     )

@@ -4,6 +4,7 @@ import errno
 import io
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -173,6 +174,22 @@ def test_a_crash_whose_report_cannot_be_written_is_still_one_line_and_in_the_env
     ran = failing(ZeroDivisionError())("doctor", "--json")
     assert (ran.code, ran.json["error"]["code"], ran.json["schema"]) == (70, "internal", "course.doctor/1")
     assert ran.err.count("\n") == 1
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a process cannot be sent Ctrl-C alone")
+def test_ctrl_c_while_the_program_is_loaded_shows_no_traceback():
+    with subprocess.Popen(
+        [sys.executable, "-X", "importtime", "-m", "course", "--version"],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+    ) as started:  # fmt: skip
+        assert started.stderr
+        for line in started.stderr:
+            if line.endswith(" typer.colors\n"):
+                started.send_signal(signal.SIGINT)
+                break
+        assert "Traceback" not in started.stderr.read()
+    assert started.returncode == -signal.SIGINT
 
 
 def test_ctrl_c_exits_130_and_is_told_in_one_word(failing):

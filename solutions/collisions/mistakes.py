@@ -442,7 +442,7 @@ mistakes(
 mistakes(
     "GRAVITY_TYPED_IN",
     "In one place a fixed number such as 9.81 stands where the given g belongs.",
-    "Use the argument g everywhere: for the height, the velocity, the speed at the floor and the time to it, and in the rule for the rest.",
+    "Use the argument g everywhere: for the height, the velocity, the speed at the floor, the time to it, and in the rule for the rest.",
 ).edit("simulate_drop", {"v[i] - g * h\n        if": "v[i] - 9.81 * h\n        if"})
 mistakes(
     "FLIGHT_WITH_NEW_VELOCITY",
@@ -2087,7 +2087,6 @@ def _hops(
     wait=lambda v, speed, g: (v + speed) / g,
     flies=lambda z, v, s, g: (z + v * s - g * s * s / 2, v - g * s),
     rebound=lambda e: e,
-    limit=lambda g, h: g * h,
     left=lambda left, wait: left - wait,
     on=None,
     floor=lambda r: r,
@@ -2099,7 +2098,7 @@ def _hops(
 
     def simulate(z0, v0, radius, e, g, t_end, h):
         (z, v), low, rows = (z0, v0), floor(radius), [(z0, v0)]
-        rests = z0 <= radius and abs(v0) <= limit(g, h)
+        rests = z0 <= radius and abs(v0) <= g * h
         for _ in range(round(t_end / h)):
             rest, flight = h, flies
             for _ in range(100):  # of some wrong programs the loop has no end
@@ -2109,7 +2108,7 @@ def _hops(
                     break
                 rest, flight = left(rest, moment), on or flies
                 z, v = low, rebound(e) * speed
-                rests = v <= limit(g, h)
+                rests = v <= g * h
             z, v = (radius, 0.0) if rests else flight(z, v, rest, g)
             rows.append((z, v))
         z, v = np.array(rows).T
@@ -2143,6 +2142,5 @@ _HOPS = {
     ),
     "rebound": _DROP["rebound"],
     "floor": _DROP["floor"],
-    "limit": (("GRAVITY_TYPED_IN", lambda g, h: 9.81 * h),),
     "left": (("TIME_LEFT_WRONG", lambda left, wait: wait), ("TIME_LEFT_WRONG", lambda left, wait: left)),
 }

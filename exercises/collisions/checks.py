@@ -180,8 +180,10 @@ def test_moment_never(submission, draw):
 @pytest.mark.task(bundles.SPHERES)
 @pytest.mark.points(0)
 def test_sphere_arguments(submission, draw):
-    """The arguments of detect_sphere_sphere after a call"""
-    bundles.expect_kept(submission, bundles.SPHERES, bundles.asked("sphere_kept", draw)[0])
+    """The arguments of detect_sphere_sphere after a call, and centres that coincide"""
+    xa, ra, xb, rb = bundles.asked("sphere_kept", draw)[0]
+    bundles.expect_kept(submission, bundles.SPHERES, (xa, ra, xb, rb))
+    bundles.expect_one_centre(submission, [(xa, ra, xa.copy(), rb)])
 
 
 @pytest.mark.task(bundles.PLANE)

@@ -109,8 +109,8 @@ FIXED = {
         *_calls(*((*_RUB, mu) for mu in (0.1, 0.3, 0.5, 4.0))),
         *_calls((2.0, 1.0, [1, -3], [0, 1], [0, -1], 0.2, 0.15)),
         *_calls((1.0, 2.0, [1, 9], [0, -8], [1, 0], 0.5, 2.5)),
-        # A slip of 5 mm/s that sticks, and one that does not; masses as above.
-        *_calls(*((1.0, 2.0, [1, 0.003], [-1, -0.002], [1, 0], 0.5, mu) for mu in (0.3, 0.001))),
+        # A slip of 0.5 mm/s that sticks, and one that does not; masses as above.
+        *_calls(*((1.0, 2.0, [1, 0.0003], [-1, -0.0002], [1, 0], 0.5, mu) for mu in (0.3, 0.0001))),
         *_calls(*((1.0, mb, [3, 1], [-1, 0], [1, 0], 0.5, 0.1) for mb in (1.0, 1.008, 1.000005, 50000.0))),
     ],
     "friction_absent": _calls(
@@ -152,7 +152,7 @@ FIXED = {
     # exact), one behind the other, a slow pair, and the first again: nothing that is kept may count.
     "head_on_mended": [
         *_e(1.0, 0.6, 0.0),
-        (paths.HeadOn((1.0, 2.0), (-0.5, 0.54), (2.0, -2.0), 0.5, 0.5), 0.9, 0.03),
+        (paths.HeadOn((1.0, 2.0), (-0.5, 0.54), (2.0, -2.0), 0.5, 0.5), 0.95, 0.05),
         (paths.HeadOn((2.0, 1.0), (-1.5, 0.53), (3.0, 1.0), 0.25, 0.5), 2.0, 0.05),
         (paths.HeadOn((1.0, 2.0), (-0.2501, 0.25015), (0.0002, -0.0001), 0.25, 0.6), 2.0, 0.05),
         *_e(1.0),
@@ -303,3 +303,6 @@ QUESTIONS = {
         )
     ],
 }
+
+#: So many programs with two mistakes are known for a task: here all of them.
+PAIRS = 1600

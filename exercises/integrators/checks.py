@@ -220,7 +220,7 @@ def test_integrate_counts(submission, draw):
 @pytest.mark.points(0)
 def test_integrate_refusals(submission, draw):
     """Which durations integrate refuses"""
-    durations = ((1.1, 0.2), (0.0400001, 0.0001), (60.000002, 0.2)) if draw is None else cases.refused(draw)
+    durations = ((1.1, 0.2), (0.0400001, 0.0001), (60.0000006, 0.2)) if draw is None else cases.refused(draw)
     cases.expect_refusals(submission, (np.array([1.0]), np.array([0.0])), durations)
     cases.expect_taken(submission, (np.array([1.0]), np.array([0.0])), [(1.00000004, 0.1), (0.99999996, 0.1)])
 

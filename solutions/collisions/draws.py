@@ -412,10 +412,10 @@ def slow_line(rng):
 
 
 def creeping(rng, stays=False):
-    """An impact with friction in which the bodies slide past each other at a few mm/s, until friction stops
-    that; or, where it ``stays``, with too little friction to stop even that."""
+    """An impact with friction in which the bodies slide past each other at less than a mm/s, until friction
+    stops that; or, where it ``stays``, with too little friction to stop even that."""
     ma, mb, va, vb, n, e = impact(rng, 3)
-    slip, closing = 10 ** rng.uniform(-2.7, -2.2), float((va - vb) @ n)
+    slip, closing = 10 ** rng.uniform(-3.7, -3.2), float((va - vb) @ n)
     mu = float(rng.uniform(0.3, 0.7) * slip / ((1 + e) * closing) if stays else rng.uniform(0.2, 0.6))
     return ma, mb, va, va - closing * n + slip * across(rng, n), n, e, mu
 

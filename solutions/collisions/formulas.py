@@ -56,6 +56,12 @@ def _plane(gap=None, depth=lambda r, s: r - s, normal=lambda n: n, touching=lamb
 
 # -- impacts --------------------------------------------------------------------------------------------
 
+
+def each(code, *forms):
+    """The same code for several forms of a term."""
+    return tuple((code, form) for form in forms)
+
+
 #: How the speed of parting is written into the impulse, rightly and wrongly.
 FACTORS = (
     ("RESTITUTION_SQUARED", lambda e: 1 + e * e),
@@ -64,8 +70,7 @@ FACTORS = (
     ("RESTITUTION_HALVED", lambda e: 1 + e / 2),
     ("IMPULSE_HALVED", lambda e: (1 + e) / 2),
     ("RESTITUTION_AS_ENERGY", lambda e: 1 + math.sqrt(e)),
-    ("RESTITUTION_IGNORED", lambda e: 1.0),
-    ("RESTITUTION_IGNORED", lambda e: 2.0),
+    *each("RESTITUTION_IGNORED", lambda e: 1.0, lambda e: 2.0),
     ("ONLY_THE_REBOUND", lambda e: e),
     ("RESTITUTION_SIGN_FLIPPED", lambda e: 1 - e),
 )
@@ -78,22 +83,16 @@ def _give(ma, mb):
 
 #: How the masses enter it, wrongly: what stands in the place of 1/ma + 1/mb.
 GIVES = (
-    ("MASS_NOT_INVERSE", lambda ma, mb: ma + mb),
-    ("MASS_NOT_INVERSE", lambda ma, mb: 1 / (ma + mb)),
+    *each("MASS_NOT_INVERSE", lambda ma, mb: ma + mb, lambda ma, mb: 1 / (ma + mb)),
     ("MASS_NOT_INVERSE", lambda ma, mb: 1 / _give(ma, mb)),
     ("IMPULSE_HALVED", lambda ma, mb: 2 * _give(ma, mb)),
-    ("MEAN_MASS", lambda ma, mb: 2 / (ma + mb)),
-    ("MEAN_MASS", lambda ma, mb: 4 / (ma + mb)),
-    ("EQUAL_MASSES_ASSUMED", lambda ma, mb: 2 / ma),
-    ("EQUAL_MASSES_ASSUMED", lambda ma, mb: 2 / mb),
+    *each("MEAN_MASS", lambda ma, mb: 2 / (ma + mb), lambda ma, mb: 4 / (ma + mb)),
+    *each("EQUAL_MASSES_ASSUMED", lambda ma, mb: 2 / ma, lambda ma, mb: 2 / mb),
     ("IMPULSE_DOUBLED", lambda ma, mb: _give(ma, mb) / 2),
     ("MASS_SUM_ROOTED", lambda ma, mb: 1 / math.sqrt(ma * mb)),
-    ("MASSES_SUBTRACTED", lambda ma, mb: 1 / ma - 1 / mb),
-    ("MASSES_SUBTRACTED", lambda ma, mb: abs(1 / ma - 1 / mb)),
-    ("ONE_MASS_ONLY", lambda ma, mb: 1 / ma),
-    ("ONE_MASS_ONLY", lambda ma, mb: 1 / mb),
-    ("MASSES_IGNORED", lambda ma, mb: 1.0),
-    ("MASSES_IGNORED", lambda ma, mb: 2.0),
+    *each("MASSES_SUBTRACTED", lambda ma, mb: 1 / ma - 1 / mb, lambda ma, mb: abs(1 / ma - 1 / mb)),
+    *each("ONE_MASS_ONLY", lambda ma, mb: 1 / ma, lambda ma, mb: 1 / mb),
+    *each("MASSES_IGNORED", lambda ma, mb: 1.0, lambda ma, mb: 2.0),
 )
 
 
@@ -143,10 +142,13 @@ def _impact(
     closing_of=lambda va, vb, n: float((va - vb) @ n),
     slow=None,
     kept=lambda w, n: w,
+    over=lambda ma, mb: (ma, mb),
+    rubs_over=lambda ma, mb: (ma, mb),
 ):
     """An impact. ``shares``: of the impulse on a and b; ``along(n, u)``: its direction, u = vb - va;
 
-    ``friction(press, slip, speed, give, mu)``: the impulse across, for a slip of b seen from a.
+    ``friction(press, slip, speed, give, mu)``: the impulse across, for a slip of b seen from a; ``over``,
+    ``rubs_over``: the masses over which the impulse, and friction in it, changes the two velocities.
     """
 
     def resolve(ma, mb, va, vb, n, e, mu=0.0):
@@ -160,9 +162,13 @@ def _impact(
         slip = slip_of(va, vb, vb - va + closing * n, n)
         across = friction(press, slip, _size(slip), give(ma, mb), mu)
         main = press * along(n, vb - va)
-        across_a, across_b = (s * across for s in (friction_shares or shares))
+        rubs = zip(friction_shares or shares, (ma, mb), rubs_over(ma, mb), strict=True)
+        across_a, across_b = (
+            share * (own / other if own != other else 1.0) * across for share, own, other in rubs
+        )
         a, b = (share * main + side for share, side in zip(shares, (across_a, across_b), strict=True))
-        return kept(va, n) + kick(a, ma, mb), kept(vb, n) + kick(b, mb, ma)
+        of_a, of_b = over(ma, mb)
+        return kept(va, n) + kick(a, of_a, mb), kept(vb, n) + kick(b, of_b, ma)
 
     return resolve
 
@@ -259,9 +265,9 @@ def _each_rubs(cap):
     return resolve
 
 
-def _scaled(friction=_no_friction):
-    """All of the velocities after an impact without loss is multiplied by e."""
-    right = _impact(factor=lambda e: 2.0, friction=friction)
+def _scaled(friction=_no_friction, factor=lambda e: 2.0):
+    """All of the velocities after an impact without loss, or with another factor, is multiplied by e."""
+    right = _impact(factor=factor, friction=friction)
 
     def resolve(ma, mb, va, vb, n, e, *mu):
         va, vb, n = _array(va), _array(vb), _array(n)
@@ -444,8 +450,11 @@ def _gap_over_speed(xa, va, ra, xb, vb, rb, dt):
     return max(gap, 0.0) / speed if gap <= speed * dt else None
 
 
-def _mixed(twice, four, over):
-    """Of two forms of the quadratic formula: b = ``twice`` x . v, b² - ``four`` a c, all over ``over`` a."""
+def _mixed(twice, four, over, other=False):
+    """Of two forms of the quadratic formula: b = ``twice`` x . v, b² - ``four`` a c, all over ``over`` a.
+
+    With ``other``, ``over`` c is above and -b + sqrt(...) below.
+    """
 
     def time_of_impact(xa, va, ra, xb, vb, rb, dt):
         x, v = _array(xb) - _array(xa), _array(vb) - _array(va)
@@ -453,7 +462,8 @@ def _mixed(twice, four, over):
         if b >= 0 or c <= 0:
             return 0.0 if b < 0 else None
         room = b * b - four * a * c
-        t = (-b - math.sqrt(max(room, 0.0))) / (over * a)
+        root = math.sqrt(max(room, 0.0))
+        t = over * c / (root - b) if other else (-b - root) / (over * a)
         return t if room >= 0 and 0 <= t <= dt else None
 
     return time_of_impact
@@ -525,10 +535,8 @@ RIGHT = {
 _TOUCHING = (
     ("TOUCHING_INVERTED", lambda deep: deep < 0),
     ("TOUCHING_NEEDS_OVERLAP", lambda deep: deep > 0),
-    ("CONTACT_MARGIN", lambda deep: deep >= -0.01),
-    ("CONTACT_MARGIN", lambda deep: deep >= -0.001),
-    ("CONTACT_MARGIN", lambda deep: deep >= -0.1),
-    ("CONTACT_MARGIN", lambda deep: deep >= 0.01),
+    *each("CONTACT_MARGIN", lambda deep: deep >= -0.01, lambda deep: deep >= -0.001),
+    *each("CONTACT_MARGIN", lambda deep: deep >= -0.1, lambda deep: deep >= 0.01),
     ("ALWAYS_TOUCHES", lambda deep: True),
     ("NEVER_TOUCHES", lambda deep: False),
 )
@@ -541,8 +549,8 @@ _IMPACTS = {
     "give": GIVES,
     "shares": (
         ("IMPULSE_REVERSED", (1.0, -1.0)),
-        *(("THIRD_LAW_MISSING", shares) for shares in ((1.0, 1.0), (-1.0, -1.0), (-1.0, 0.0), (0.0, 1.0))),
-        *(("THIRD_LAW_MISSING", shares) for shares in ((-1.0, 0.5), (-0.5, 1.0), (-1.0, 2.0), (-2.0, 1.0))),
+        *each("THIRD_LAW_MISSING", (1.0, 1.0), (-1.0, -1.0), (-1.0, 0.0), (0.0, 1.0)),
+        *each("THIRD_LAW_MISSING", (-1.0, 0.5), (-0.5, 1.0), (-1.0, 2.0), (-2.0, 1.0)),
         ("IMPULSE_HALVED", (-0.5, 0.5)),
         ("IMPULSE_DOUBLED", (-2.0, 2.0)),
     ),
@@ -550,34 +558,26 @@ _IMPACTS = {
         ("MASS_NOT_INVERSE", lambda j, m, other: j * m),
         ("MASSES_IGNORED", lambda j, m, other: j),
         ("MASSES_SWAPPED", lambda j, m, other: j / other),
-        ("MASS_NOT_INVERSE", lambda j, m, other: j * other),
-        ("MASS_NOT_INVERSE", lambda j, m, other: j / (m + other)),
-        ("MASS_NOT_INVERSE", lambda j, m, other: j / m**2),
-        ("MASS_NOT_INVERSE", lambda j, m, other: j / math.sqrt(m)),
+        *each("MASS_NOT_INVERSE", lambda j, m, other: j * other, lambda j, m, other: j / (m + other)),
+        *each("MASS_NOT_INVERSE", lambda j, m, other: j / m**2, lambda j, m, other: j / math.sqrt(m)),
     ),
+    "over": each("SAME_MASS_TWICE", lambda ma, mb: (ma, ma), lambda ma, mb: (mb, mb)),
     "along": (
-        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: _unit(u)),
-        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: -_unit(u)),
-        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: u / float(u @ n)),
-        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: np.ones(len(n))),
-        ("BLOW_PER_AXIS", lambda n, u: np.sign(n)),
-        ("BLOW_PER_AXIS", lambda n, u: n * np.abs(n)),
-        ("BLOW_PER_AXIS", lambda n, u: np.abs(n)),
+        *each("BLOW_NOT_ALONG_NORMAL", lambda n, u: _unit(u), lambda n, u: -_unit(u)),
+        *each("BLOW_NOT_ALONG_NORMAL", lambda n, u: u / float(u @ n), lambda n, u: np.ones(len(n))),
+        *each("BLOW_PER_AXIS", lambda n, u: np.sign(n), lambda n, u: n * np.abs(n), lambda n, u: np.abs(n)),
     ),
     "closing_of": (
         ("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float((va + vb) @ n)),
         ("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float(abs(va @ n) + abs(vb @ n))),
-        ("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float(va @ n)),
-        ("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float(-vb @ n)),
+        *each("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float(va @ n), lambda va, vb, n: float(-vb @ n)),
         ("SPEED_NOT_ALONG_NORMAL", lambda va, vb, n: _size(va - vb) * _sign((va - vb) @ n)),
         ("SPEED_NOT_ALONG_NORMAL", lambda va, vb, n: _size(va) - _size(vb)),
         ("APPROACH_REVERSED", lambda va, vb, n: float((vb - va) @ n)),
         ("SPEED_UNSIGNED", lambda va, vb, n: abs(float((va - vb) @ n))),
         ("SPEED_SQUARED", lambda va, vb, n: float((va - vb) @ n) * abs(float((va - vb) @ n))),
     ),
-    "slow": tuple(
-        ("RESTITUTION_DROPPED_WHEN_SLOW", limit) for limit in (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
-    ),
+    "slow": each("RESTITUTION_DROPPED_WHEN_SLOW", 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01),
     "kept": (
         ("ACROSS_NOT_KEPT", lambda w, n: (w @ n) * n),
         ("ALONG_NOT_KEPT", lambda w, n: w - (w @ n) * n),
@@ -591,6 +591,8 @@ _FRICTIONS = {
         ("FRICTION_ALWAYS_STICKS", lambda p, s, v, g, mu: -s / g if mu > 0 else 0.0 * s),
         ("FRICTION_DRIVES", lambda p, s, v, g, mu: -_coulomb(p, s, v, g, mu)),
         ("FRICTION_PER_AXIS", _per_axis),
+        ("FRICTION_AXIS_SIGN_LOST", lambda p, s, v, g, mu: -min(mu * p, v / g) * np.abs(_unit(s))),
+        ("FRICTION_AXIS_SIGN_LOST", lambda p, s, v, g, mu: min(mu * p, v / g) * np.abs(_unit(s))),
         ("STICKING_WITHOUT_MASS", lambda p, s, v, g, mu: -min(mu * p, v) * _unit(s)),
         ("STICKING_WITHOUT_MASS", lambda p, s, v, g, mu: -min(mu * p, v * g) * _unit(s)),
         ("FRICTION_TAKES_THE_LARGER", lambda p, s, v, g, mu: -max(mu * p, v / g) * _unit(s)),
@@ -613,9 +615,13 @@ _FRICTIONS = {
         ("FRICTION_NOT_UNIT", lambda p, s, v, g, mu: -min(mu * p, v / g) * s),
         ("FRICTION_WITHOUT_BLOW", lambda p, s, v, g, mu: -min(mu, v / g) * _unit(s)),
     ),
-    "friction_shares": tuple(
-        ("FRICTION_THIRD_LAW_MISSING", shares)
-        for shares in ((-1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 0.5), (-0.5, 1.0))
+    "friction_shares": (
+        *each("FRICTION_THIRD_LAW_MISSING", (-1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (-1.0, -1.0)),
+        *each("FRICTION_THIRD_LAW_MISSING", (-1.0, 0.5), (-0.5, 1.0)),
+    ),
+    "rubs_over": (
+        *each("FRICTION_OVER_OTHER_MASS", lambda ma, mb: (mb, ma), lambda ma, mb: (ma, ma)),
+        ("FRICTION_OVER_OTHER_MASS", lambda ma, mb: (mb, mb)),
     ),
     "slip_of": (
         ("FRICTION_NOT_RELATIVE", lambda va, vb, s, n: -(va - (va @ n) * n)),
@@ -635,48 +641,35 @@ TERMS = {
         {
             "normal": (
                 ("NORMAL_REVERSED", lambda w, d: -w / d),
-                ("NORMAL_NOT_UNIT", lambda w, d: w),
-                ("NORMAL_NOT_UNIT", lambda w, d: w / d**2),
-                ("NORMAL_NOT_UNIT", lambda w, d: w / math.sqrt(d)),
-                ("NORMAL_NOT_UNIT", lambda w, d: w / 2),
-                ("NORMAL_PER_AXIS", lambda w, d: np.sign(w)),
-                ("NORMAL_PER_AXIS", lambda w, d: np.abs(w) / d),
-                ("NORMAL_PER_AXIS", lambda w, d: w / np.abs(w).sum()),
-                ("NORMAL_PER_AXIS", lambda w, d: w / np.abs(w).max()),
+                *each("NORMAL_NOT_UNIT", lambda w, d: w, lambda w, d: w / d**2),
+                *each("NORMAL_NOT_UNIT", lambda w, d: w / math.sqrt(d), lambda w, d: w / 2),
+                *each("NORMAL_PER_AXIS", lambda w, d: np.sign(w), lambda w, d: np.abs(w) / d),
+                *each("NORMAL_PER_AXIS", lambda w, d: w / np.abs(w).sum(), lambda w, d: w / np.abs(w).max()),
             ),
             "depth": (
                 ("DEPTH_SIGN_FLIPPED", lambda r, d: d - r),
                 ("DEPTH_CLAMPED", lambda r, d: max(r - d, 0.0)),
                 ("DEPTH_UNSIGNED", lambda r, d: abs(r - d)),
-                ("DISTANCE_SQUARED", lambda r, d: r - d * d),
-                ("DISTANCE_SQUARED", lambda r, d: r * r - d * d),
+                *each("DISTANCE_SQUARED", lambda r, d: r - d * d, lambda r, d: r * r - d * d),
                 ("DISTANCE_SQUARED", lambda r, d: r - math.sqrt(d)),
                 ("DEPTH_HALVED", lambda r, d: (r - d) / 2),
-                ("DEPTH_AS_SHARE", lambda r, d: (r - d) / r),
-                ("DEPTH_AS_SHARE", lambda r, d: (r - d) / d),
+                *each("DEPTH_AS_SHARE", lambda r, d: (r - d) / r, lambda r, d: (r - d) / d),
                 ("RADIUS_IGNORED", lambda r, d: -d),
                 ("DISTANCE_IGNORED", lambda r, d: r),
             ),
             "touching": (*_TOUCHING, ("TOUCHING_INVERTED", lambda deep: deep <= 0)),
             "radii": (
                 ("RADIUS_IGNORED", lambda a, b: 0.0),
-                ("ONE_RADIUS_ONLY", lambda a, b: a),
-                ("ONE_RADIUS_ONLY", lambda a, b: b),
-                ("ONE_RADIUS_ONLY", max),
-                ("ONE_RADIUS_ONLY", min),
-                ("ONE_RADIUS_ONLY", lambda a, b: 2 * a),
+                *each("ONE_RADIUS_ONLY", lambda a, b: a, lambda a, b: b, max, min, lambda a, b: 2 * a),
                 ("ONE_RADIUS_ONLY", lambda a, b: 2 * b),
-                ("RADII_SUBTRACTED", lambda a, b: a - b),
-                ("RADII_SUBTRACTED", lambda a, b: abs(a - b)),
+                *each("RADII_SUBTRACTED", lambda a, b: a - b, lambda a, b: abs(a - b)),
                 ("RADII_HALVED", lambda a, b: (a + b) / 2),
                 ("RADII_MULTIPLIED", lambda a, b: a * b),
                 ("RADII_SQUARED_APART", math.hypot),
             ),
             "length": (
-                ("DISTANCE_BY_COORDINATES", lambda w: _size(w[:2])),
-                ("DISTANCE_BY_COORDINATES", lambda w: _size(w[-2:])),
-                ("DISTANCE_BY_COORDINATES", lambda w: _size(w[::2])),
-                ("DISTANCE_BY_COORDINATES", lambda w: abs(float(w[0]))),
+                *each("DISTANCE_BY_COORDINATES", lambda w: _size(w[:2]), lambda w: _size(w[-2:])),
+                *each("DISTANCE_BY_COORDINATES", lambda w: _size(w[::2]), lambda w: abs(float(w[0]))),
                 ("DISTANCE_BY_COORDINATES", lambda w: abs(float(w.sum()))),
                 ("DISTANCE_BY_COORDINATES", lambda w: float(np.abs(w).sum())),
                 ("DISTANCE_BY_COORDINATES", lambda w: float(np.abs(w).max())),
@@ -690,8 +683,7 @@ TERMS = {
             "normal": (
                 ("NORMAL_REVERSED", lambda n: -n),
                 ("NORMAL_NOT_UNIT", lambda n: 2 * n),
-                ("NORMAL_PER_AXIS", np.abs),
-                ("NORMAL_PER_AXIS", np.sign),
+                *each("NORMAL_PER_AXIS", np.abs, np.sign),
             ),
             "gap": (
                 ("DISTANCE_UNSIGNED", lambda x, p, n: abs(float((x - p) @ n))),
@@ -709,8 +701,7 @@ TERMS = {
             ),
             "depth": (
                 ("DEPTH_SIGN_FLIPPED", lambda r, s: s - r),
-                ("DEPTH_CLAMPED", lambda r, s: max(r - s, 0.0)),
-                ("DEPTH_CLAMPED", lambda r, s: min(r - s, r)),
+                *each("DEPTH_CLAMPED", lambda r, s: max(r - s, 0.0), lambda r, s: min(r - s, r)),
                 ("DEPTH_CLAMPED", lambda r, s: min(r - s, 2 * r)),
                 ("DEPTH_UNSIGNED", lambda r, s: abs(r - s)),
                 ("RADIUS_IGNORED", lambda r, s: -s),
@@ -740,10 +731,8 @@ TERMS = {
             "factor": FACTORS,
             "give": GIVES,
             "closing": (
-                ("SPEEDS_NOT_RELATIVE", lambda va, vb: va + vb),
-                ("SPEEDS_NOT_RELATIVE", lambda va, vb: abs(va) + abs(vb)),
-                ("SPEEDS_NOT_RELATIVE", lambda va, vb: va),
-                ("SPEEDS_NOT_RELATIVE", lambda va, vb: -vb),
+                *each("SPEEDS_NOT_RELATIVE", lambda va, vb: va + vb, lambda va, vb: abs(va) + abs(vb)),
+                *each("SPEEDS_NOT_RELATIVE", lambda va, vb: va, lambda va, vb: -vb),
                 ("SPEEDS_NOT_RELATIVE", lambda va, vb: abs(va) - abs(vb)),
                 ("APPROACH_REVERSED", lambda va, vb: vb - va),
                 ("SPEED_UNSIGNED", lambda va, vb: abs(va - vb)),
@@ -774,34 +763,21 @@ TERMS = {
             "overlap": (("OVERLAP_IGNORED", "ignored"), ("OVERLAP_ALWAYS_HITS", "always")),
             "radii": (
                 ("RADIUS_IGNORED", lambda a, b: 0.0),
-                ("ONE_RADIUS_ONLY", lambda a, b: a),
-                ("ONE_RADIUS_ONLY", lambda a, b: b),
-                ("ONE_RADIUS_ONLY", max),
+                *each("ONE_RADIUS_ONLY", lambda a, b: a, lambda a, b: b, max),
                 ("RADII_SQUARED_APART", math.hypot),
                 ("RADII_SUBTRACTED", lambda a, b: abs(a - b)),
                 ("RADII_HALVED", lambda a, b: (a + b) / 2),
                 ("RADIUS_ADDED_TWICE", lambda a, b: 2 * (a + b)),
             ),
-            "square": (
-                ("RADII_NOT_SQUARED", lambda reach: reach),
-                ("RADII_NOT_SQUARED", lambda reach: 2 * reach),
-            ),
+            "square": (*each("RADII_NOT_SQUARED", lambda reach: reach, lambda reach: 2 * reach),),
             "overlap_square": (("OVERLAP_IGNORED", lambda reach: 0.0),),
             "unit": (
                 ("RETURNS_SHARE_OF_STEP", lambda t, dt: t / dt),
                 ("RETURNS_TIME_LEFT", lambda t, dt: dt - t),
-                ("RETURNS_THE_STEP", lambda t, dt: dt),
-                ("RETURNS_THE_STEP", lambda t, dt: 0.0),
+                *each("RETURNS_THE_STEP", lambda t, dt: dt, lambda t, dt: 0.0),
                 ("TIME_NEGATED", lambda t, dt: -t),
             ),
-            "none": (
-                ("MISS_IS_A_NUMBER", -1.0),
-                ("MISS_IS_A_NUMBER", 0.0),
-                ("MISS_IS_A_NUMBER", -1),
-                ("MISS_IS_A_NUMBER", math.inf),
-                ("MISS_IS_A_NUMBER", math.nan),
-                ("MISS_IS_A_NUMBER", False),
-            ),
+            "none": each("MISS_IS_A_NUMBER", -1.0, 0.0, -1, math.inf, math.nan, False),
             "roots": (
                 ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room)),
                 ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room * speed2)),
@@ -809,9 +785,7 @@ TERMS = {
                 ("ROOT_TERM_WRONG", lambda room, speed2: room / speed2),
             ),
             "closing_of": (
-                ("MOTION_NOT_RELATIVE", lambda va, vb: -vb),
-                ("MOTION_NOT_RELATIVE", lambda va, vb: va),
-                ("MOTION_NOT_RELATIVE", lambda va, vb: va + vb),
+                *each("MOTION_NOT_RELATIVE", lambda va, vb: -vb, lambda va, vb: va, lambda va, vb: va + vb),
                 ("MOTION_NOT_RELATIVE", lambda va, vb: -va - vb),
                 ("MOTION_REVERSED", lambda va, vb: vb - va),
             ),
@@ -857,14 +831,14 @@ OTHERS = {
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va * vb <= 0)),
         *((("APPROACH_BY_ONE_BODY",), _approach_by(meets)) for meets in _BY_ONE),
         *((("APPROACH_BY_ONE_BODY",), _strikes_if(meets)) for meets in (*_BY_ONE[:2], _BY_ONE[3])),
-        (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: va)),
-        (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: -vb)),
+        *each(("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: va), _speed_of(lambda va, vb: -vb)),
         (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: va + vb)),
         (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: abs(va) + abs(vb))),
     ],
     "resolve": [
         *((("MASSES_IGNORED",), _without_masses(share)) for share in (1.0, 2.0)),
         (("VELOCITIES_SCALED",), _scaled()),
+        (("RESTITUTION_ON_TOP",), _scaled(factor=lambda e: 1 + e)),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact())),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets)) for meets in _BY_ONE),
         (("IMPULSE_COMPUTED_TWICE",), _one_after_the_other),
@@ -886,15 +860,14 @@ OTHERS = {
         (("FRICTION_EACH_ALONE",), _each_rubs(lambda m, give: 1.0)),
         (("FRICTION_EACH_ALONE",), _each_rubs(lambda m, give: 1 / (m * give))),
         (("VELOCITIES_SCALED",), _scaled(_coulomb)),
-        (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0)),
-        (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1 + e)),
+        (("RESTITUTION_ON_TOP",), _scaled(_coulomb, lambda e: 1 + e)),
+        *each(("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0), _rubs_by_speed(lambda e: 1 + e)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: e)),
         (("FRICTION_ONLY_WHILE_SLIDING",), _impact(friction=_rubs_while_sliding)),
         (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu * s)),
         (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu * j)),
         (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu)),
-        (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma + mb)),
-        (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma)),
+        *each(("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma + mb), _held_by(lambda ma, mb: ma)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: mb)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: (ma + mb) / 2)),
         (("EACH_BODY_ALONE",), _each_alone),
@@ -904,17 +877,16 @@ OTHERS = {
         (("PERFECTLY_STICKY",), _stick),
     ],
     "time_of_impact": [
-        (("TUNNELS",), _at_the_end_only(exact=False)),
-        (("TUNNELS",), _at_the_end_only(exact=True)),
+        *each(("TUNNELS",), _at_the_end_only(exact=False), _at_the_end_only(exact=True)),
         *(
-            (("QUADRATIC_MIXED",), _mixed(*form))
+            (("QUADRATIC_MIXED",), _mixed(*form, other))
             for form in ((1, 4, 2), (1, 1, 2), (1, 4, 1), (2, 1, 1), (2, 1, 2), (2, 4, 1))
+            for other in (False, True)
         ),
         *((("ROOT_TERM_WRONG",), _without_root(share)) for share in (1.0, 2.0)),
         (("TIME_NEGATED",), _solved(lambda a, b, room: (b + math.sqrt(room)) / a)),
         (("MIDDLE_TERM_WRONG",), _solved(lambda a, b, room: (b - math.sqrt(room)) / a)),
-        (("MISSES_COUNT_AS_HITS",), _head_on_always),
-        (("MISSES_COUNT_AS_HITS",), _gap_over_speed),
+        *each(("MISSES_COUNT_AS_HITS",), _head_on_always, _gap_over_speed),
         *((("MISS_NOT_SEEN",), _miss_in_the_other_form(real)) for real in (abs, lambda room: max(room, 0.0))),
         (("APPROACH_NOT_ASKED",), _moment(past=True, overlap="always")),
         (("IMPACT_IN_THE_PAST",), _moment(past=True, overlap="ignored")),

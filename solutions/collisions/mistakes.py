@@ -298,7 +298,7 @@ mistakes(
         now = np.linalg.norm(xb - xa) <= ra + rb
         return _right(xa, va, ra, xb, vb, rb, dt) if now or np.linalg.norm(apart) <= ra + rb else None
     """,
-).around(
+).body(
     "time_of_impact",
     """
         x, v = xb - xa, vb - va
@@ -414,20 +414,40 @@ mistakes(
 ).edit("simulate_drop", {"h - (v[i] + speed) / g": "0.0", "return t, z, v": "return t, list(z), list(v)"})
 mistakes(
     "EQUAL_MASSES_ASSUMED",
-    "Your code uses one mass for both bodies.",
+    "The impulse is computed as if both bodies had the mass of one of them.",
     "Each body has its own mass: 1/ma + 1/mb. Try masses of 1 kg and 3 kg.",
-).around(
-    "simulate_head_on",
-    """
-        t = h * np.arange(round(t_end / h) + 1)
-        x0, v0 = np.array(x0, float), np.array(v0, float)
-        closing = v0[0] - v0[1]
-        met = (x0[1] - x0[0] - 2 * radius) / closing if closing > 0 else math.inf
-        j = (1 + restitution) * closing * m[0] / 2
-        v1 = v0 + np.array([-j / m[0], j / m[1]])
-        s = t[:, None]
-        return t, x0 + v0 * np.minimum(s, met) + v1 * np.maximum(s - met, 0), np.where(s < met, v0, v1)
-    """,
+).edit("simulate_head_on", {"_impulse(m[0], m[1]": "_impulse(m[0], m[0]"})
+mistakes(
+    "SAME_MASS_TWICE",
+    "Both velocities change by the impulse over the same mass.",
+    "Each velocity changes by J over its own mass: that of a by J/ma, that of b by J/mb.",
+).edit("resolve", {"vb + impulse / mb": "vb + impulse / ma"}).edit(
+    "simulate_head_on", {"impulse / m[0]": "impulse / m[1]"}
+)
+mistakes(
+    "FRICTION_OVER_OTHER_MASS",
+    "Friction changes a velocity by its impulse over the other body's mass.",
+    "Across the normal as along it, each velocity changes by the impulse over its own mass: by Jt/ma and Jt/mb.",
+)
+mistakes(
+    "FRICTION_AXIS_SIGN_LOST",
+    "The direction of friction has lost the signs of its coordinates.",
+    "On b it acts along -vt / |vt|, each coordinate with its sign: no abs().",
+)
+mistakes(
+    "RESTITUTION_ON_TOP",
+    "The velocities after the impact are multiplied by e, which is in the impulse already.",
+    "e is the speed of parting over that of approach: it belongs in the factor 1 + e of J, and nowhere else.",
+)
+mistakes(
+    "GRAVITY_TYPED_IN",
+    "In one place a fixed number such as 9.81 stands where the given g belongs.",
+    "Use the argument g everywhere: for the height, the velocity, the speed at the floor, the time to it, and in the rule for the rest.",
+).edit("simulate_drop", {"v[i] - g * h\n        if": "v[i] - 9.81 * h\n        if"})
+mistakes(
+    "FLIGHT_WITH_NEW_VELOCITY",
+    "The height moves with the velocity at the end of the step, and g h**2 / 2 is subtracted besides.",
+    "z + v h - g h**2 / 2 takes the velocity v from the start of the step: compute the height first, then the velocity.",
 )
 mistakes(
     "VELOCITIES_SCALED",
@@ -764,30 +784,6 @@ mistakes(
     "TIME_TO_FLOOR_SIGN",
     "The time to the floor is computed with the wrong sign of v.",
     "v is upwards, and negative on the way down. From (z, v) the ball gets to the floor after (v + speed)/g, with speed = sqrt(v**2 + 2 g (z - radius)).",
-).body(
-    "simulate_drop",
-    """
-        n = round(t_end / h)
-        z, v = float(z0), float(v0)
-        rest = z <= radius and v == 0
-        zs, vs = [z], [v]
-        for i in range(n):
-            left = h
-            while not rest:
-                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
-                wait = (speed - v) / g
-                if wait > left:
-                    z, v = z + v * left - g * left * left / 2, v - g * left
-                    break
-                left -= wait
-                z, v = radius, restitution * speed
-                rest = speed <= g * h
-            if rest:
-                z, v = radius, 0.0
-            zs.append(z)
-            vs.append(v)
-        return h * np.arange(n + 1), np.array(zs), np.array(vs)
-    """,
 ).edit("simulate_drop", {"(v[i] + speed) / g": "(speed - v[i]) / g"})
 mistakes(
     "CONTACT_ON_A_LINE",
@@ -1769,6 +1765,11 @@ mistakes(
     "It touches where its centre is one radius above the floor, z = radius, at an instant inside the step: up to then it falls freely.",
 )
 mistakes(
+    "DOWN_TOO_SOON",
+    "The ball is put on the floor before it has fallen that far.",
+    "From (z, v) it gets there after (v + speed)/g. If that is longer than what is left of the step, it is still in the air.",
+)
+mistakes(
     "REBOUND_COMPLEMENT",
     "The ball leaves the floor with 1 - e times its speed: the bounciest bounces the least.",
     "e is the share of the speed that is left: the ball leaves the floor with e times its speed.",
@@ -1791,6 +1792,7 @@ def hypotheses():
     families = {task: (family, base, terms) for task, (family, base, terms) in formulas.TERMS.items()}
     families["simulate_head_on"] = _head_on, {}, _HEAD_ON
     families["simulate_drop"] = _drop, {}, _DROP
+    several = (*families.items(), ("simulate_drop", (_hops, {}, _HOPS)))
     for again in (lambda s: max(s, 0.0), lambda s: s):
         yield "simulate_head_on", ("IMPULSE_COMPUTED_TWICE",), _head_on(again=again)
     for code, after in _AFTER:
@@ -1806,12 +1808,14 @@ def hypotheses():
         lambda left, h: (left, h, h),
     ):
         yield "simulate_drop", ("STEP_FOR_THE_REST",), _drop(rest_of=rest)
-    for task, (family, base, terms) in families.items():
-        for codes, function in formulas.OTHERS.get(task, ()):
-            yield task, codes, function
+    yield from (
+        (task, codes, program) for task in families for codes, program in formulas.OTHERS.get(task, ())
+    )
+    for task, (family, base, terms) in several:
         for term, forms in terms.items():
             for code, form in forms:
                 yield task, (code,), family(**base | {term: form})
+    for task, (family, base, terms) in several:
         yield from _pairs(task, family, base, terms)
     yield "resolve", ("BLOW_NOT_ALONG_NORMAL", "RESTITUTION_IGNORED"), formulas.whole_vectors
 
@@ -1850,6 +1854,7 @@ def _head_on(
     old=(),
     after=None,
     goes=1.0,
+    over=lambda ma, mb: (ma, mb),
 ):
     """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
 
@@ -1863,11 +1868,11 @@ def _head_on(
             return after(m, va, vb, e)
         if slow is not None and va - vb < slow:
             e = 0.0
-        j = factor(e) * (va - vb) / give(*m)
-        va = va + shares[0] * kick(j, m[0], m[1])
+        j, (of_a, of_b) = factor(e) * (va - vb) / give(*m), over(*m)
+        va = va + shares[0] * kick(j, of_a, m[1])
         if again:
             j = factor(e) * again(va - vb) / give(*m)
-        return va, vb + shares[1] * kick(j, m[1], m[0])
+        return va, vb + shares[1] * kick(j, of_b, m[0])
 
     def simulate(m, x0, v0, radius, e, t_end, h):
         n = count(t_end / h)
@@ -1900,10 +1905,10 @@ def _head_on(
     return simulate
 
 
-def _elastic(m, va, vb):
-    """Both velocities after an impact without loss."""
-    j = 2 * (va - vb) / (1 / m[0] + 1 / m[1])
-    return va - j / m[0], vb + j / m[1]
+def _scaled(m, va, vb, e, factor):
+    """Both velocities after an impact, times e. factor: of the impulse, where 1 + e belongs."""
+    j = factor * (va - vb) / (1 / m[0] + 1 / m[1])
+    return e * (va - j / m[0]), e * (vb + j / m[1])
 
 
 #: Velocities after the impact by another rule.
@@ -1912,7 +1917,8 @@ _AFTER = (
     ("MASSES_IGNORED", lambda m, va, vb, e: (va - (1 + e) * (va - vb), vb + (1 + e) * (va - vb))),
     ("ELASTIC_EXCHANGE", lambda m, va, vb, e: (vb, va)),
     ("EACH_BODY_ALONE", lambda m, va, vb, e: (-e * va, -e * vb)),
-    ("VELOCITIES_SCALED", lambda m, va, vb, e: tuple(e * w for w in _elastic(m, va, vb))),
+    ("VELOCITIES_SCALED", lambda m, va, vb, e: _scaled(m, va, vb, e, 2.0)),
+    ("RESTITUTION_ON_TOP", lambda m, va, vb, e: _scaled(m, va, vb, e, 1 + e)),
 )
 
 _HEAD_ON = {
@@ -1921,6 +1927,7 @@ _HEAD_ON = {
     "give": formulas.GIVES,
     "kick": formulas.TERMS["resolve"][2]["kick"],
     "shares": formulas.TERMS["resolve"][2]["shares"],
+    "over": formulas.TERMS["resolve"][2]["over"],
     "reach": (
         ("RADIUS_IGNORED", lambda r: 0.0),
         ("ONE_RADIUS_BETWEEN", lambda r: r),
@@ -1928,8 +1935,7 @@ _HEAD_ON = {
     ),
     "count": (
         ("TRUNCATED_STEP_COUNT", int),
-        ("OFF_BY_ONE_SAMPLE", lambda x: round(x) - 1),
-        ("OFF_BY_ONE_SAMPLE", lambda x: round(x) + 1),
+        *formulas.each("OFF_BY_ONE_SAMPLE", lambda x: round(x) - 1, lambda x: round(x) + 1),
         ("OFF_BY_ONE_SAMPLE", lambda x: int(x) + 1),
     ),
     "late": (("IMPACT_AT_SAMPLE", True),),
@@ -2022,10 +2028,8 @@ _DROP = {
     "rebound": (
         ("RESTITUTION_SQUARED", lambda e: e * e),
         ("RESTITUTION_AS_ENERGY", math.sqrt),
-        ("RESTITUTION_IGNORED", lambda e: 1.0),
-        ("RESTITUTION_IGNORED", lambda e: 0.0),
-        ("RESTITUTION_DOUBLED", lambda e: 1 + e),
-        ("RESTITUTION_DOUBLED", lambda e: 2 * e),
+        *formulas.each("RESTITUTION_IGNORED", lambda e: 1.0, lambda e: 0.0),
+        *formulas.each("RESTITUTION_DOUBLED", lambda e: 1 + e, lambda e: 2 * e),
         ("RESTITUTION_HALVED", lambda e: e / 2),
         ("REBOUND_COMPLEMENT", lambda e: 1 - e),
     ),
@@ -2035,10 +2039,8 @@ _DROP = {
         ("RADII_HALVED", lambda r: r / 2),
     ),
     "fall": (
-        ("EULER_IN_FLIGHT", 1.0),
-        ("EULER_IN_FLIGHT", 0.0),
-        ("FLIGHT_WRONG", 0.25),
-        ("FLIGHT_WRONG", -0.5),
+        *formulas.each("EULER_IN_FLIGHT", 1.0, 0.0),
+        *formulas.each("FLIGHT_WRONG", 0.25, -0.5),
     ),
     "pull": (("GRAVITY_WRONG", -1.0), ("GRAVITY_WRONG", 2.0), ("GRAVITY_WRONG", 0.5), ("GRAVITY_WRONG", 0.0)),
     "count": _HEAD_ON["count"],
@@ -2068,8 +2070,7 @@ _DROP = {
     "passes": (("FALLS_THROUGH_FLOOR", True),),
     "straight": (
         ("CONTACT_ON_A_LINE", lambda v, v_next, speed: (v + v_next) / 2),
-        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: v),
-        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: v_next),
+        *formulas.each("CONTACT_ON_A_LINE", lambda v, v_next, speed: v, lambda v, v_next, speed: v_next),
         ("CONTACT_ON_A_LINE", lambda v, v_next, speed: -speed),
     ),
     "mirror": (
@@ -2078,4 +2079,68 @@ _DROP = {
         ("PATH_MIRRORED", lambda e, speed, v_next: (1.0, e * speed)),
         ("PATH_MIRRORED", lambda e, speed, v_next: (e, e * speed)),
     ),
+}
+
+
+def _hops(
+    fall=lambda v, z, low, g: math.sqrt(max(v * v + 2 * g * (z - low), 0.0)),
+    wait=lambda v, speed, g: (v + speed) / g,
+    flies=lambda z, v, s, g: (z + v * s - g * s * s / 2, v - g * s),
+    rebound=lambda e: e,
+    left=lambda left, wait: left - wait,
+    on=None,
+    floor=lambda r: r,
+):
+    """Contact after contact: how fast the ball is there and when, whether that is in the step, how it goes on.
+
+    ``on``: the flight in what is left of the step, if it is another than ``flies``.
+    """
+
+    def simulate(z0, v0, radius, e, g, t_end, h):
+        (z, v), low, rows = (z0, v0), floor(radius), [(z0, v0)]
+        rests = z0 <= radius and abs(v0) <= g * h
+        for _ in range(round(t_end / h)):
+            rest, flight = h, flies
+            for _ in range(100):  # of some wrong programs the loop has no end
+                speed = fall(v, z, low, g)
+                moment = wait(v, speed, g)
+                if rests or moment > rest:
+                    break
+                rest, flight = left(rest, moment), on or flies
+                z, v = low, rebound(e) * speed
+                rests = v <= g * h
+            z, v = (radius, 0.0) if rests else flight(z, v, rest, g)
+            rows.append((z, v))
+        z, v = np.array(rows).T
+        return h * np.arange(len(rows)), z, v
+
+    return simulate
+
+
+_HOPS = {
+    "fall": (
+        ("FALLS_TO_ZERO", lambda v, z, low, g: math.sqrt(max(v * v + 2 * g * z, 0.0))),
+        ("FALL_WITHOUT_TWO", lambda v, z, low, g: math.sqrt(max(v * v + g * (z - low), 0.0))),
+        ("GRAVITY_TYPED_IN", lambda v, z, low, g: math.sqrt(max(v * v + 19.62 * (z - low), 0.0))),
+    ),
+    "wait": (
+        ("TIME_TO_FLOOR_SIGN", lambda v, speed, g: (speed - v) / g),
+        ("TIME_TO_FLOOR_SIGN", lambda v, speed, g: (v - speed) / g),
+        ("GRAVITY_TYPED_IN", lambda v, speed, g: (v + speed) / 9.81),
+    ),
+    "flies": (
+        ("GRAVITY_TYPED_IN", lambda z, v, s, g: (z + v * s - g * s * s / 2, v - 9.81 * s)),
+        ("GRAVITY_TYPED_IN", lambda z, v, s, g: (z + v * s - 9.81 * s * s / 2, v - g * s)),
+        ("FLIGHT_WITH_NEW_VELOCITY", lambda z, v, s, g: (z + (v - g * s) * s - g * s * s / 2, v - g * s)),
+        ("EULER_IN_FLIGHT", lambda z, v, s, g: (z + (v - g * s) * s, v - g * s)),
+        ("EULER_IN_FLIGHT", lambda z, v, s, g: (z + v * s, v - g * s)),
+    ),
+    "on": (
+        ("REST_OF_STEP_WITHOUT_GRAVITY", lambda z, v, s, g: (z + v * s, v)),
+        ("REST_OF_STEP_WITHOUT_GRAVITY", lambda z, v, s, g: (z + v * s, v - g * s)),
+        ("REST_OF_STEP_WITHOUT_GRAVITY", lambda z, v, s, g: (z + v * s - g * s * s / 2, v)),
+    ),
+    "rebound": _DROP["rebound"],
+    "floor": _DROP["floor"],
+    "left": (("TIME_LEFT_WRONG", lambda left, wait: wait), ("TIME_LEFT_WRONG", lambda left, wait: left)),
 }

@@ -55,7 +55,7 @@ def _euler(
             dv = signs[1] * kick(h) * accel(t + time * h, *at(q + dq if moves == "new" else q, v))
             return gives(q, v, dq, dv)
         dv = signs[1] * kick(h) * accel(t + time * h, *at(q, v))
-        w = {"old": v, "new": v + dv, "mean": v + dv / 2, "change": dv, "both": 2 * v + dv}[moves]
+        w = {"old": v, "new": v + dv, "mean": v + dv / 2, "change": dv, "both": 2 * v + dv}.get(moves, dv / h)
         return gives(q, v, signs[0] * move(h) * w, dv)
 
     return step
@@ -93,10 +93,13 @@ def _drift_kick_drift(
     late="new",
     gives=lambda q, v, dq, dv: (q + dq, v + dv),
     sign=1.0,
+    sees=1.0,
 ):
+    """``sees``: how much of the first half of the drift the kick gets."""
+
     def step(accel, t, q, v, h):
         dq = before(h) * v
-        dv = sign * kick(h) * accel(t + time * h, q + dq, v)
+        dv = sign * kick(h) * accel(t + time * h, q + sees * dq, v)
         return gives(q, v, dq + after(h) * {"new": v + dv, "old": v, "mean": v + dv / 2}[late], dv)
 
     return step
@@ -146,16 +149,20 @@ RIGHT = {
     "rk4_step": [_RK4],
 }
 
+
+def each(code, *forms):
+    """The same code for several forms of a term."""
+    return tuple((code, form) for form in forms)
+
+
 _GIVES = (
     ("RETURNS_SWAPPED", lambda q, v, dq, dv: (v + dv, q + dq)),
     ("RETURNS_INCREMENT", lambda q, v, dq, dv: (dq, dv)),
     ("STATE_NOT_ADVANCED", lambda q, v, dq, dv: (q, v)),
     ("POSITION_NOT_ADVANCED", lambda q, v, dq, dv: (q, v + dv)),
     ("VELOCITY_NOT_ADVANCED", lambda q, v, dq, dv: (q + dq, v)),
-    ("RETURNS_INCREMENT", lambda q, v, dq, dv: (dq, v + dv)),
-    ("RETURNS_INCREMENT", lambda q, v, dq, dv: (q + dq, dv)),
-    ("WRONG_SIGN", lambda q, v, dq, dv: (q - dq, v - dv)),
-    ("WRONG_SIGN", lambda q, v, dq, dv: (q - dq, v + dv)),
+    *each("RETURNS_INCREMENT", lambda q, v, dq, dv: (dq, v + dv), lambda q, v, dq, dv: (q + dq, dv)),
+    *each("WRONG_SIGN", lambda q, v, dq, dv: (q - dq, v - dv), lambda q, v, dq, dv: (q - dq, v + dv)),
     ("WRONG_SIGN", lambda q, v, dq, dv: (q + dq, v - dv)),
 )
 
@@ -164,8 +171,7 @@ def _sizes(right):
     """Other factors in the place of one that is ``right`` times h."""
     forms = [
         ("STEP_SIZE_MISSING", lambda h: right),
-        ("POWER_OF_STEP_WRONG", lambda h: right * h * h),
-        ("POWER_OF_STEP_WRONG", lambda h: right * h**0.5),
+        *each("POWER_OF_STEP_WRONG", lambda h: right * h * h, lambda h: right * h**0.5),
     ]
     forms += [("FACTOR_WRONG", lambda h, k=k: k * right * h) for k in (0.5, 2.0, 1 / 3, 1.5, 0.25, 4.0)]
     forms += [("WRONG_SIGN", lambda h: -right * h), ("TERM_MISSING", lambda h: 0.0)]
@@ -178,11 +184,9 @@ def _of_drift():
     return tuple((missing.get(code, code), form) for code, form in _sizes(0.5))
 
 
-_TIMES = tuple(("STAGE_TIMES_AHEAD", shift) for shift in (1.0, 0.5, 2.0)) + (("STAGE_TIMES_BEHIND", -1.0),)
+_TIMES = (*each("STAGE_TIMES_AHEAD", 1.0, 0.5, 2.0), ("STAGE_TIMES_BEHIND", -1.0))
 _SEES = (
-    ("ACCEL_ARGUMENTS_MIXED", lambda q, v: (v, q)),
-    ("ACCEL_ARGUMENTS_MIXED", lambda q, v: (q, q)),
-    ("ACCEL_ARGUMENTS_MIXED", lambda q, v: (v, v)),
+    *each("ACCEL_ARGUMENTS_MIXED", lambda q, v: (v, q), lambda q, v: (q, q), lambda q, v: (v, v)),
     ("ACCEL_SEES_NO_VELOCITY", lambda q, v: (q, 0 * v)),
     ("ACCEL_SEES_NO_POSITION", lambda q, v: (0 * q, v)),
 )
@@ -193,33 +197,36 @@ _EULER_TERMS = {
     "time": _TIMES,
     "sees": _SEES,
 }
+_MOVES = (
+    ("POSITION_MOVED_TWICE", "both"),
+    ("MOVES_WITH_THE_CHANGE", "change"),
+    ("MOVES_WITH_ACCELERATION", "acceleration"),
+)
 _SQUARE = (
     ("HALF_MISSING", lambda h: h * h),
     ("QUADRATIC_TERM_MISSING", lambda h: 0.0),
-    ("POSITION_TERM_SUBTRACTED", lambda h: -h * h / 2),
-    ("POSITION_TERM_SUBTRACTED", lambda h: -h * h),
-    ("FACTOR_WRONG", lambda h: h * h / 4),
-    ("FACTOR_WRONG", lambda h: h * h / 3),
-    ("FACTOR_WRONG", lambda h: h * h / 6),
-    ("FACTOR_WRONG", lambda h: 2 * h * h),
-    ("POWER_OF_STEP_WRONG", lambda h: h / 2),
-    ("POWER_OF_STEP_WRONG", lambda h: h),
-    ("POWER_OF_STEP_WRONG", lambda h: h**3 / 2),
+    *each("POSITION_TERM_SUBTRACTED", lambda h: -h * h / 2, lambda h: -h * h),
+    *each("FACTOR_WRONG", lambda h: h * h / 4, lambda h: h * h / 3, lambda h: h * h / 6, lambda h: 2 * h * h),
+    *each("POWER_OF_STEP_WRONG", lambda h: h / 2, lambda h: h, lambda h: h**3 / 2),
 )
 _KICKS = (
     ("KICKS_TOO_LARGE", lambda h: h),
     ("KICK_SUBTRACTED", lambda h: -h / 2),
-    ("FACTOR_WRONG", lambda h: h / 4),
-    ("FACTOR_WRONG", lambda h: h / 3),
+    *each("FACTOR_WRONG", lambda h: h / 4, lambda h: h / 3),
     ("STEP_SIZE_MISSING", lambda h: 0.5),
     ("POWER_OF_STEP_WRONG", lambda h: h * h / 2),
 )
 _SIGN = (("WRONG_SIGN", -1.0),)
-_LATER = (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 0.5), ("STAGE_TIMES_WRONG", 2.0))
+_LATER = (("STAGE_TIMES_FROZEN", 0.0), *each("STAGE_TIMES_WRONG", 0.5, 2.0))
 
 
-def _weights(divisor):
-    return tuple(w / divisor for w in (1, 2, 2, 1))
+def _weights(divisor, weights=(1, 2, 2, 1)):
+    return tuple(w / divisor for w in weights)
+
+
+def _sixths(code, *several):
+    """The same code for several sets of weights, in sixths."""
+    return each(code, *(_weights(6, weights) for weights in several))
 
 
 _OF_ALL = {"FACTOR_WRONG": "WEIGHTS_DO_NOT_ADD_UP", "TERM_MISSING": "STATE_NOT_ADVANCED"}
@@ -228,28 +235,13 @@ _RK4_TERMS = {
     "weights": (
         ("EQUAL_WEIGHTS", (0.25,) * 4),
         ("WEIGHTS_MISPLACED", (1 / 3, 1 / 6, 1 / 6, 1 / 3)),
-        *(
-            ("WEIGHTS_MISPLACED", tuple(w / 6 for w in some))
-            for some in ((2, 1, 1, 2), (1, 2, 1, 2), (2, 2, 1, 1))
-        ),
-        *(
-            ("WEIGHTS_MISPLACED", tuple(w / 6 for w in some))
-            for some in ((1, 1, 2, 2), (2, 1, 2, 1), (1, 1, 1, 3))
-        ),
-        *(("WEIGHTS_DO_NOT_ADD_UP", _weights(divisor)) for divisor in (1, 2, 3, 4, 5, 8, 10, 12)),
-        *(("WEIGHTS_DO_NOT_ADD_UP", (w,) * 4) for w in (1 / 6, 1 / 3, 1 / 2, 1.0)),
-        *(
-            ("WEIGHTS_DO_NOT_ADD_UP", tuple(w / 6 for w in some))
-            for some in ((1, 2, 2, 0), (0, 2, 2, 1), (1, 2, 1, 1))
-        ),
-        *(
-            ("WEIGHTS_DO_NOT_ADD_UP", tuple(w / 6 for w in some))
-            for some in ((1, 1, 2, 1), (1, 3, 3, 1), (2, 2, 2, 1))
-        ),
-        *(
-            ("WEIGHT_SIGN_FLIPPED", tuple(w / 6 for w in some))
-            for some in ((1, 2, 2, -1), (1, -2, 2, 1), (-1, 2, 2, 1))
-        ),
+        *_sixths("WEIGHTS_MISPLACED", (2, 1, 1, 2), (1, 2, 1, 2), (2, 2, 1, 1), (1, 1, 2, 2), (2, 1, 2, 1)),
+        *_sixths("WEIGHTS_MISPLACED", (1, 1, 1, 3), (1, 4, 0, 1), (1, 0, 4, 1)),
+        *each("WEIGHTS_DO_NOT_ADD_UP", *map(_weights, (1, 2, 3, 4, 5, 8, 10, 12))),
+        *each("WEIGHTS_DO_NOT_ADD_UP", *((w,) * 4 for w in (1 / 6, 1 / 3, 1 / 2, 1.0))),
+        *_sixths("WEIGHTS_DO_NOT_ADD_UP", (1, 2, 2, 0), (0, 2, 2, 1), (1, 2, 1, 1), (1, 1, 2, 1)),
+        *_sixths("WEIGHTS_DO_NOT_ADD_UP", (1, 3, 3, 1), (2, 2, 2, 1)),
+        *_sixths("WEIGHT_SIGN_FLIPPED", (1, 2, 2, -1), (1, -2, 2, 1), (-1, 2, 2, 1)),
         ("RK4_IS_MIDPOINT", (0, 1, 0, 0)),
         ("MIDDLE_ONLY", (0, 0, 1, 0)),
         ("RK4_IS_EULER", (1, 0, 0, 0)),
@@ -258,37 +250,21 @@ _RK4_TERMS = {
         ("MIDDLE_ONLY", (0, 0.5, 0.5, 0)),
     ),
     "reach": (
-        ("HALF_STEP_MISSING", (0, 1, 1, 1)),
-        ("HALF_STEP_MISSING", (0, 1, 0.5, 1)),
-        ("HALF_STEP_MISSING", (0, 0.5, 1, 1)),
+        *each("HALF_STEP_MISSING", (0, 1, 1, 1), (0, 1, 0.5, 1), (0, 0.5, 1, 1)),
         ("LAST_STAGE_AT_HALF", (0, 0.5, 0.5, 0.5)),
-        ("STAGE_REACH_WRONG", (0, 0.25, 0.5, 1)),
-        ("STAGE_REACH_WRONG", (0, 0.5, 0.25, 1)),
-        ("STAGE_REACH_WRONG", (0, 0.5, 0.5, 2)),
-        ("STAGE_REACH_WRONG", (0, 1 / 3, 2 / 3, 1)),
-        ("STAGE_NOT_MOVED", (0, 0, 0.5, 1)),
-        ("STAGE_NOT_MOVED", (0, 0.5, 0, 1)),
-        ("STAGE_NOT_MOVED", (0, 0.5, 0.5, 0)),
-        ("STAGE_NOT_MOVED", (0, 0, 0, 0)),
-        ("WRONG_SIGN", (0, -0.5, 0.5, 1)),
-        ("WRONG_SIGN", (0, 0.5, -0.5, 1)),
-        ("WRONG_SIGN", (0, 0.5, 0.5, -1)),
+        *each("STAGE_REACH_WRONG", (0, 0.25, 0.5, 1), (0, 0.5, 0.25, 1), (0, 0.5, 0.5, 2)),
+        *each("STAGE_REACH_WRONG", (0, 1 / 3, 2 / 3, 1)),
+        *each("STAGE_NOT_MOVED", (0, 0, 0.5, 1), (0, 0.5, 0, 1), (0, 0.5, 0.5, 0), (0, 0, 0, 0)),
+        *each("WRONG_SIGN", (0, -0.5, 0.5, 1), (0, 0.5, -0.5, 1), (0, 0.5, 0.5, -1)),
     ),
     "times": (
         ("STAGE_TIMES_FROZEN", (0, 0, 0, 0)),
-        *(
-            ("STAGE_TIMES_WRONG", some)
-            for some in ((0, 1, 1, 1), (0, 0.5, 0.5, 0.5), (0, 0, 0, 1), (0, 0.5, 1, 1))
-        ),
-        *(
-            ("STAGE_TIMES_WRONG", some)
-            for some in ((0, 0.5, 0.5, 0), (0, 0, 0.5, 1), (0, 0.5, 0, 1), (1, 1, 1, 1))
-        ),
-        *(("STAGE_TIMES_WRONG", some) for some in ((0, 0.25, 0.5, 1), (0, 0.25, 0.75, 1), (0, 1, 2, 3))),
+        *each("STAGE_TIMES_WRONG", (0, 1, 1, 1), (0, 0.5, 0.5, 0.5), (0, 0, 0, 1), (0, 0.5, 1, 1)),
+        *each("STAGE_TIMES_WRONG", (0, 0.5, 0.5, 0), (0, 0, 0.5, 1), (0, 0.5, 0, 1), (1, 1, 1, 1)),
+        *each("STAGE_TIMES_WRONG", (0, 0.25, 0.5, 1), (0, 0.25, 0.75, 1), (0, 1, 2, 3)),
     ),
-    "source": tuple(
-        ("STAGES_NOT_CHAINED", some)
-        for some in ((0, 0, 0, 0), (0, 0, 0, 2), (0, 0, 1, 1), (0, 0, 1, 0), (0, 0, 0, 1))
+    "source": each(
+        "STAGES_NOT_CHAINED", (0, 0, 0, 0), (0, 0, 0, 2), (0, 0, 1, 1), (0, 0, 1, 0), (0, 0, 0, 1)
     ),
     "view": (
         ("STAGE_VELOCITY_IGNORED", lambda _q, v, q_i, v_i: (q_i, v, v_i)),
@@ -298,18 +274,15 @@ _RK4_TERMS = {
         ("POSITION_SLOPES_FROZEN", lambda _q, v, q_i, v_i: (q_i, v, v)),
     ),
     "weights_v": (
-        ("WEIGHTS_DIFFER", (0.25,) * 4),
-        *(("WEIGHTS_DIFFER", _weights(divisor)) for divisor in (1, 3, 8)),
-        ("WEIGHTS_DIFFER", (1, 0, 0, 0)),
-        *(
-            ("WEIGHTS_DIFFER", tuple(w / 6 for w in some))
-            for some in ((1, 2, 1, 1), (1, 1, 2, 1), (1, 1, 1, 1))
-        ),
+        *each("WEIGHTS_DIFFER", (0.25,) * 4, (1, 0, 0, 0), *map(_weights, (1, 3, 8))),
+        *_sixths("WEIGHTS_DIFFER", (1, 2, 1, 1), (1, 1, 2, 1), (1, 1, 1, 1)),
     ),
     # A factor of both sums is one of all the weights.
     "size": tuple((_OF_ALL.get(code, code), form) for code, form in _sizes(1.0)),
     "sign": _SIGN,
 }
+
+_SECOND_NEW = (("EULER_IS_SEMI_IMPLICIT", lambda h: h),)
 
 #: For each task its families: the family, what it takes for granted, and its terms.
 TERMS = {
@@ -319,23 +292,12 @@ TERMS = {
             {},
             _EULER_TERMS
             | {
-                "moves": (
-                    ("EULER_IS_SEMI_IMPLICIT", "new"),
-                    ("EULER_AVERAGES", "mean"),
-                    ("POSITION_MOVED_TWICE", "both"),
-                    ("MOVES_WITH_THE_CHANGE", "change"),
-                ),
+                "moves": (("EULER_IS_SEMI_IMPLICIT", "new"), ("EULER_AVERAGES", "mean"), *_MOVES),
             },
         ),
-        (
-            _euler,
-            {"first": "position", "moves": "new", "time": 0.0},
-            {"kick": (("EULER_IS_SEMI_IMPLICIT", lambda h: h),)},
-        ),
-        (
-            _euler,
-            {"first": "position", "moves": "new", "time": 1.0},
-            {"kick": (("EULER_IS_SEMI_IMPLICIT", lambda h: h),)},
+        *(
+            (_euler, {"first": "position", "moves": "new", "time": time}, {"kick": _SECOND_NEW})
+            for time in (0.0, 1.0)
         ),
     ],
     "semi_implicit_euler_step": [
@@ -344,12 +306,7 @@ TERMS = {
             {"moves": "new"},
             _EULER_TERMS
             | {
-                "moves": (
-                    ("SEMI_IMPLICIT_IS_EULER", "old"),
-                    ("AVERAGED_VELOCITY", "mean"),
-                    ("POSITION_MOVED_TWICE", "both"),
-                    ("MOVES_WITH_THE_CHANGE", "change"),
-                ),
+                "moves": (("SEMI_IMPLICIT_IS_EULER", "old"), ("AVERAGED_VELOCITY", "mean"), *_MOVES),
             },
         ),
         (
@@ -357,7 +314,7 @@ TERMS = {
             {"first": "position", "moves": "new", "time": 1.0},
             _EULER_TERMS
             | {
-                "time": (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 0.5), ("STAGE_TIMES_WRONG", 2.0)),
+                "time": _LATER,
                 "moves": (("END_TIME_OLD_POSITION", "old"),),
             },
         ),
@@ -392,6 +349,7 @@ TERMS = {
                 "after": _of_drift(),
                 "time": (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 1.0)),
                 "late": (("DRIFTS_WITH_OLD_VELOCITY", "old"), ("DRIFTS_WITH_MEAN_VELOCITY", "mean")),
+                "sees": each("KICK_NOT_HALF_WAY", 2.0, 0.0),
                 "sign": _SIGN,
             },
         ),
@@ -447,6 +405,18 @@ def _moved_by_new_velocity(accel, t, q, v, h):
     return q + h * v_next, v_next
 
 
+def _kicked_again(shift, new):
+    """Semi-implicit Euler whose velocity gets a kick at the new position, too, or that kick alone."""
+
+    def step(accel, t, q, v, h):
+        moved = v + h * np.asarray(accel(t, q, v))
+        at = q + h * moved
+        start, seen = (moved if part else v for part in new)
+        return at, start + h * np.asarray(accel(t + shift * h, at, seen))
+
+    return step
+
+
 def _half_a_drift(accel, t, q, v, h):
     """Drift, kick, drift whose second half starts again from the old position."""
     v_next = v + h * np.asarray(accel(t + h / 2, q + h / 2 * v, v))
@@ -495,24 +465,25 @@ OTHERS = {
         (("WRONG_SIGN",), lambda accel, t, q, v, h: _EULER(lambda *at: -accel(*at), t, q, v, h)),
     ],
     "semi_implicit_euler_step": [
-        (("FIRST_COMPONENT_ONLY",), _one_component(_KICK_DRIFT)),
-        (("FIRST_COMPONENT_ONLY",), _one_component(_DRIFT_KICK)),
+        *each(("FIRST_COMPONENT_ONLY",), _one_component(_KICK_DRIFT), _one_component(_DRIFT_KICK)),
         (("POSITION_MOVED_TWICE",), _moves_twice),
         *((("NEW_ON_BOTH_SIDES",), _new_on_both_sides(shift)) for shift in (1, 0)),
         (("SQUARE_TERM_ON_TOP",), _square_on_top),
+        *(
+            (("KICKED_AGAIN",), _kicked_again(shift, new))
+            for shift in (1, 0)
+            for new in ((0, 0), (0, 1), (1, 0), (1, 1))
+        ),
         (("SEMI_IMPLICIT_IS_EULER",), _EULER),
-        (("SEMI_IMPLICIT_IS_VERLET",), _KDK),
-        (("SEMI_IMPLICIT_IS_VERLET",), _DKD),
+        *each(("SEMI_IMPLICIT_IS_VERLET",), _KDK, _DKD),
         (("SEMI_IMPLICIT_IS_RK4",), _RK4),
     ],
     "velocity_verlet_step": [
-        (("FIRST_COMPONENT_ONLY",), _one_component(_KDK)),
-        (("FIRST_COMPONENT_ONLY",), _one_component(_DKD)),
+        *each(("FIRST_COMPONENT_ONLY",), _one_component(_KDK), _one_component(_DKD)),
         (("VERLET_IS_EULER",), _EULER),
         (("ONE_KICK_HALF_WAY",), _one_kick_half_way),
         (("DRIFT_HALF_MISSING",), _half_a_drift),
-        (("VERLET_IS_SEMI_IMPLICIT",), _KICK_DRIFT),
-        (("VERLET_IS_SEMI_IMPLICIT",), _DRIFT_KICK),
+        *each(("VERLET_IS_SEMI_IMPLICIT",), _KICK_DRIFT, _DRIFT_KICK),
         (("VERLET_IS_RK4",), _RK4),
         (("VERLET_IS_MIDPOINT",), _runge_kutta(weights=(0, 1, 0, 0))),
         (("USES_OLD_ACCELERATION",), _verlet(kick_old=lambda h: h, kick_new=lambda h: 0.0)),
@@ -524,8 +495,7 @@ OTHERS = {
             ("KICK_SUBTRACTED",),
             _verlet(square=lambda h: -h * h / 2, kick_old=lambda h: -h / 2, kick_new=lambda h: h / 2),
         ),
-        (("STAGE_TIMES_FROZEN",), _at(_KDK, 0)),
-        (("STAGE_TIMES_FROZEN",), _at(_DKD, 0)),
+        *each(("STAGE_TIMES_FROZEN",), _at(_KDK, 0), _at(_DKD, 0)),
     ],
     "rk4_step": [
         (("POSITION_BY_NEW_VELOCITY",), _moved_by_new_velocity),
@@ -537,8 +507,7 @@ OTHERS = {
                 weights=(0.5, 0, 0, 0.5), reach=(0, 0, 0, 1), times=(0, 0, 0, 1), source=(0, 0, 0, 0)
             ),
         ),
-        (("RK4_IS_VERLET",), _KDK),
-        (("RK4_IS_VERLET",), _DKD),
+        *each(("RK4_IS_VERLET",), _KDK, _DKD),
         (("RK4_IS_SEMI_IMPLICIT",), _KICK_DRIFT),
         *(
             (("HALF_STEP_MISSING",), _runge_kutta(reach=reach, times=reach))

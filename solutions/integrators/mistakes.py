@@ -12,25 +12,6 @@ from course.scoring import kit
 
 mistakes = Mistakes()
 
-#: A search that walks up by a hundredth; SIZE is what of the matrix has to stay below one.
-_BY_SIZE = """
-    def size(z):
-        def accel(t, q, v):
-            return -(omega**2) * q
-
-        a, c = step(accel, 0.0, np.ones(1), np.zeros(1), z / omega)
-        b, d = step(accel, 0.0, np.zeros(1), omega * np.ones(1), z / omega)
-        matrix = np.array([[a[0], b[0]], [c[0] / omega, d[0] / omega]])
-        return SIZE
-
-    z = 0.05
-    while size(z) <= 1 + 1e-8:
-        z += 0.01
-        if z >= 10:
-            return math.inf
-    return (z - 0.005) / omega if z > 0.05 else 0.0
-"""
-
 mistakes(
     "EULER_IS_SEMI_IMPLICIT",
     "One of position and velocity is already new when the other is computed, as in semi-implicit Euler.",
@@ -170,6 +151,20 @@ mistakes(
             q_next = q + h * w
             a_next = np.asarray(accel(t + h, q_next, w), dtype=float)
             _last.update(t=t + h, a=a_next)
+            return q_next, w + h / 2 * a_next
+    """,
+).program(
+    "velocity_verlet_step",
+    """
+        _last = {}
+
+
+        def velocity_verlet_step(accel, t, q, v, h):
+            a = _last["a"] if _last and np.array_equal(_last["q"], q) else accel(t, q, v)
+            w = v + h / 2 * a
+            q_next = q + h * w
+            a_next = accel(t + h, q_next, w)
+            _last.update(q=q_next.copy(), a=a_next)
             return q_next, w + h / 2 * a_next
     """,
 )
@@ -321,6 +316,18 @@ mistakes(
     kind="fact",
 ).around("integrate", "return _right(step, accel, q0, v0, round(t_end / h) * h, h)")
 mistakes(
+    "DURATION_LIMIT_TOO_WIDE",
+    "Durations far from a whole number of steps are refused, and this one is not.",
+    "With N = round(t_end / h), raise ValueError if abs(t_end / h - N) > 1e-6. A difference in seconds is another limit, and so is np.isclose, whose limit grows with N.",
+    kind="fact",
+).edit("integrate", {"- n) > 1e-6": "- n) > 9e-6"}).edit("integrate", {"> 1e-6": "> 1e-6 * n"})
+mistakes(
+    "DURATION_CHECKED_ON_ONE_SIDE",
+    "Durations are refused on one side of a whole number of steps only: a little too long, or a little too short.",
+    "Take the difference without its sign: raise ValueError if abs(t_end / h - N) > 1e-6.",
+    kind="fact",
+).edit("integrate", {"abs(t_end / h - n)": "t_end / h - n"})
+mistakes(
     "REFUSES_DIVISIBLE",
     "t_end / h may come out just below a whole number, as 28.999999999999996 for 0.29 s at 0.01 s. Then int() and // give 28, and t_end % h is almost h. np.arange in steps of h may have one entry too many.",
     "Take N = round(t_end / h) for the steps and np.arange(N + 1) * h for the times, and raise ValueError only if abs(t_end / h - N) > 1e-6.",
@@ -384,7 +391,7 @@ mistakes(
     "STABILITY_BY_NORM",
     "The limits are those of a norm of the matrix. One step can stretch a state, and the motion still stays bounded.",
     "Look whether you use the eigenvalues, max(abs(np.linalg.eigvals(M))). If you do, compare the two unit states from which M is made: (1, 0) and (0, omega), with velocities divided by omega afterwards.",
-).body("max_stable_step", _BY_SIZE.replace("SIZE", "np.linalg.norm(matrix, 2)"))
+).edit("max_stable_step", {"max(abs(np.linalg.eigvals(matrix)))": "np.linalg.norm(matrix, 2)"})
 mistakes(
     "ASSUMES_ITS_LIMIT",
     "h * omega comes out the same for three methods with different limits.",
@@ -394,7 +401,7 @@ mistakes(
     "EIGENVALUES_WITHOUT_MODULUS",
     "The limits are those of the real parts or the signed values of the eigenvalues: -1.1 and 0.8 + 0.8i are unstable too.",
     "Take the modulus of each eigenvalue before the maximum: max(abs(np.linalg.eigvals(M))).",
-).body("max_stable_step", _BY_SIZE.replace("SIZE", "max(np.linalg.eigvals(matrix).real)"))
+).edit("max_stable_step", {"max(abs(np.linalg.eigvals(matrix)))": "max(np.linalg.eigvals(matrix).real)"})
 mistakes(
     "LARGEST_STABLE_STEP",
     "The method becomes unstable and then stable again, and the result may lie beyond the unstable steps.",
@@ -793,36 +800,30 @@ mistakes(
     "The steps are those of velocity Verlet.",
     "Runge-Kutta needs four slopes of the whole state (dq = v and dv = accel), each computed from the one before.",
 )
-mistakes(
-    "EULER_IS_VERLET",
-    "The steps are those of velocity Verlet.",
-    "Explicit Euler uses one slope, the one at the start: q + h*v and v + h*accel(t, q, v).",
-)
-mistakes(
-    "EULER_IS_RK4",
-    "The steps are those of RK4.",
-    "Explicit Euler uses one slope, the one at the start: q + h*v and v + h*accel(t, q, v).",
-)
-mistakes(
-    "EULER_IS_MIDPOINT",
-    "The steps are those of the midpoint method.",
-    "Explicit Euler uses one slope, the one at the start: q + h*v and v + h*accel(t, q, v).",
-)
+for code, method in (
+    ("EULER_IS_VERLET", "velocity Verlet"),
+    ("EULER_IS_RK4", "RK4"),
+    ("EULER_IS_MIDPOINT", "the midpoint method"),
+):
+    mistakes(
+        code,
+        f"The steps are those of {method}.",
+        "Explicit Euler uses one slope, the one at the start: q + h*v and v + h*accel(t, q, v).",
+    )
 mistakes(
     "SEMI_IMPLICIT_IS_RK4",
     "The steps are those of RK4.",
     "Semi-implicit Euler takes whole steps: v_next = v + h*accel(t, q, v), then q + h*v_next.",
 )
-mistakes(
-    "VERLET_IS_RK4",
-    "The steps are those of RK4.",
-    "Kick, drift, kick: v_half = v + h/2*a, q_next = q + h*v_half, v_next = v_half + h/2*accel(t + h, q_next, v_half).",
-)
-mistakes(
-    "VERLET_IS_MIDPOINT",
-    "The steps are those of the midpoint method.",
-    "Kick, drift, kick: v_half = v + h/2*a, q_next = q + h*v_half, v_next = v_half + h/2*accel(t + h, q_next, v_half).",
-)
+for code, method in (
+    ("VERLET_IS_RK4", "RK4"),
+    ("VERLET_IS_MIDPOINT", "the midpoint method"),
+):
+    mistakes(
+        code,
+        f"The steps are those of {method}.",
+        "Kick, drift, kick: v_half = v + h/2*a, q_next = q + h*v_half, v_next = v_half + h/2*accel(t + h, q_next, v_half).",
+    )
 mistakes(
     "RK4_IS_SEMI_IMPLICIT",
     "The steps are those of semi-implicit Euler.",
@@ -1032,6 +1033,21 @@ mistakes(
     "MOVES_WITH_THE_CHANGE",
     "The position is moved with the change of the velocity only, not with the velocity.",
     "Move the position with the velocity itself: the old one in explicit Euler, v_next = v + h*a in semi-implicit Euler.",
+)
+mistakes(
+    "MOVES_WITH_ACCELERATION",
+    "The position is moved by h times the acceleration, where h times a velocity belongs.",
+    "The position changes by h times a velocity, and the velocity by h times an acceleration.",
+)
+mistakes(
+    "KICKED_AGAIN",
+    "The velocity that moves the position is not the one that is returned: that one gets the acceleration at the new position.",
+    "One call of accel is enough. Velocity first: v_next = v + h*accel(t, q, v), then q + h*v_next, and v_next stays.",
+)
+mistakes(
+    "KICK_NOT_HALF_WAY",
+    "The acceleration between the two halves of the drift is not taken at the position half way.",
+    "Drift first, m = q + h/2*v, then give accel that position: v + h*accel(t + h/2, m, v).",
 )
 mistakes(
     "POSITION_MOVED_TWICE",
@@ -1250,8 +1266,8 @@ mistakes(
 )
 mistakes(
     "ORDER_ROUNDED",
-    "The slope is rounded to a whole number.",
-    "Return the slope itself as a float, so that the reader can see how close it is to a whole number.",
+    "The slope is rounded.",
+    "Return the slope itself as a float, with all its digits.",
 )
 mistakes(
     "HALVING_ASSUMED",
@@ -1303,7 +1319,7 @@ mistakes(
 )
 mistakes(
     "SLOPE_NEARLY_RIGHT",
-    "The slope is near the right one, but further off than rounding takes it.",
+    "The slope is near the right one, but not equal to it to nine digits.",
     "Round nothing, keep no number in float32, and add nothing to the errors before the logarithm.",
     kind="consequence",
 )
@@ -1530,8 +1546,7 @@ _LOOP = {
         ("OFF_BY_ONE_SAMPLE", lambda t_end, h: int(t_end / h) + 1),
         ("TRUNCATED_AND_SHORT", lambda t_end, h: int(t_end / h) - 1),
         ("TRUNCATED_AND_SHORT", lambda t_end, h: int(t_end // h) - 1),
-        ("TIME_ACCUMULATES", _running),
-        ("TIME_ACCUMULATES", _running_short),
+        *formulas.each("TIME_ACCUMULATES", _running, _running_short),
         ("TIME_ACCUMULATES", lambda t_end, h: _running(t_end, h, overshoot=True)),
         ("TIME_ACCUMULATES", lambda t_end, h: len(np.arange(0, t_end + h, h)) - 1),
         ("TIME_ACCUMULATES", lambda t_end, h: len(np.arange(0, t_end, h)) - 1),
@@ -1540,30 +1555,25 @@ _LOOP = {
     "refuses": (
         ("REFUSES_NO_DURATION", lambda x: x <= 0),
         ("DURATION_NOT_CHECKED", lambda x: False),
-        ("DURATION_NOT_CHECKED", lambda x: abs(x - round(x)) > 0.01),
-        ("DURATION_NOT_CHECKED", lambda x: abs(x - round(x)) > 0.1),
-        ("REFUSES_DIVISIBLE", lambda x: x != round(x)),
-        ("REFUSES_DIVISIBLE", lambda x: x % 1 > 1e-6),
+        ("DURATION_LIMIT_TOO_WIDE", lambda x: abs(x - round(x)) > 0.01),
+        ("DURATION_CHECKED_ON_ONE_SIDE", lambda x: x - round(x) > 1e-6),
+        *formulas.each("REFUSES_DIVISIBLE", lambda x: x != round(x), lambda x: x % 1 > 1e-6),
         ("REFUSES_DIVISIBLE", lambda x: int(x) != x),
     ),
     "rows": (
         ("INITIAL_STATE_MISSING", "zero first"),
-        ("OFF_BY_ONE_SAMPLE", "later"),
-        ("OFF_BY_ONE_SAMPLE", "but the last"),
+        *formulas.each("OFF_BY_ONE_SAMPLE", "later", "but the last"),
         ("LAST_STEP_MISSING", "last empty"),
         ("ROWS_ALL_THE_SAME", "same"),
     ),
     "time": (
         ("TIMES_START_LATE", lambda i, h: (i + 1) * h),
-        ("TIMES_ARE_INDICES", lambda i, h: float(i)),
-        ("TIMES_ARE_INDICES", lambda i, h: h),
+        *formulas.each("TIMES_ARE_INDICES", lambda i, h: float(i), lambda i, h: h),
     ),
     "told": (
         ("TIME_NOT_PASSED", lambda i, h: 0.0),
-        ("TIME_AHEAD", lambda i, h: (i + 1) * h),
-        ("TIME_AHEAD", lambda i, h: (i + 0.5) * h),
-        ("TIME_IS_THE_INDEX", lambda i, h: float(i)),
-        ("TIME_IS_THE_INDEX", lambda i, h: h),
+        *formulas.each("TIME_AHEAD", lambda i, h: (i + 1) * h, lambda i, h: (i + 0.5) * h),
+        *formulas.each("TIME_IS_THE_INDEX", lambda i, h: float(i), lambda i, h: h),
     ),
     "carries": (
         ("STATE_NOT_CARRIED", ()),
@@ -1572,16 +1582,13 @@ _LOOP = {
     ),
     "gives": (
         ("HISTORIES_SWAPPED", lambda t, q, v: (t, v, q)),
-        ("HISTORIES_IDENTICAL", lambda t, q, v: (t, v, v)),
-        ("HISTORIES_IDENTICAL", lambda t, q, v: (t, q, q)),
+        *formulas.each("HISTORIES_IDENTICAL", lambda t, q, v: (t, v, v), lambda t, q, v: (t, q, q)),
         ("HISTORIES_TRANSPOSED", lambda t, q, v: (t, q.T, v.T)),
     ),
     "store": (("INTEGER_STATE", lambda a: np.array(a).astype(int).astype(float)),),
     "start": (
-        ("INITIAL_STATE_WRONG", lambda q, v: (0.0 * q, 0.0 * v)),
-        ("INITIAL_STATE_WRONG", lambda q, v: (q, 0.0 * v)),
-        ("INITIAL_STATE_WRONG", lambda q, v: (v, q)),
-        ("INITIAL_STATE_WRONG", lambda q, v: (0.0 * q + 1, 0.0 * v)),
+        *formulas.each("INITIAL_STATE_WRONG", lambda q, v: (0.0 * q, 0.0 * v), lambda q, v: (q, 0.0 * v)),
+        *formulas.each("INITIAL_STATE_WRONG", lambda q, v: (v, q), lambda q, v: (0.0 * q + 1, 0.0 * v)),
     ),
     "size": (("STEP_GIVEN_WRONG", lambda h: 1.0), ("STEP_GIVEN_WRONG", lambda h: h / 2)),
 }
@@ -1685,7 +1692,7 @@ def _search(
     none=math.inf,
     above=False,
     dz=0.05,
-    scales="both",
+    scales=(1, 1, 1),
     start=lambda omega: 1.0,
     end=lambda omega: 1.0,
     force=lambda omega: omega**2,
@@ -1693,8 +1700,7 @@ def _search(
 ):
     """``size`` of the map must not exceed ``limit``.
 
-    ``scales``: where velocities are counted in units of omega, going "in", coming "out", or "both"; "times":
-    coming out they are multiplied instead of divided.
+    ``scales``: powers of omega in the unit of the second start's velocity, and of the two that come out.
     """
 
     def largest(step, omega):
@@ -1703,11 +1709,11 @@ def _search(
 
         def stable(z):
             h = probe(z, omega)
-            given, rate = (1.0 if scales == side else omega for side in ("out", "in"))
-            rate = 1 / omega if scales == "times" else rate
+            given, *rates = (omega**power for power in scales)
             zero_, one = np.zeros(1), np.ones(1)
             columns = [step(accel, 0.0, one, zero_, h), step(accel, 0.0, zero_, given * one, h)]
-            m = np.array([[float(c[0][0]) for c in columns], [float(c[1][0]) / rate for c in columns]])
+            rows = zip(columns, rates, strict=True)
+            m = np.array([[float(c[0][0]), float(c[1][0]) / rate] for c, rate in rows]).T
             return size(m) <= limit
 
         begin = first * start(omega)
@@ -1742,8 +1748,7 @@ _SEARCH = {
         ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, axis=0).max()),
         ("STABILITY_BY_DETERMINANT", lambda m: abs(np.linalg.det(m))),
         ("STABILITY_BY_DETERMINANT", lambda m: math.sqrt(abs(np.linalg.det(m)))),
-        ("STABILITY_BY_TRACE", lambda m: abs(np.trace(m)) / 2),
-        ("STABILITY_BY_TRACE", lambda m: np.trace(m) / 2),
+        *formulas.each("STABILITY_BY_TRACE", lambda m: abs(np.trace(m)) / 2, lambda m: np.trace(m) / 2),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: np.linalg.eigvals(m).real.max()),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).real).max()),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).max())),
@@ -1753,31 +1758,24 @@ _SEARCH = {
         ("MODULUS_BY_SUM", lambda m: max(abs(e.real) + abs(e.imag) for e in np.linalg.eigvals(m))),
         ("ONE_START_DECIDES", lambda m: np.linalg.norm(m[:, 0])),
         ("ONE_START_DECIDES", lambda m: np.linalg.norm(m[:, 1])),
-        ("STABILITY_BY_ENTRY", lambda m: abs(m[0, 0])),
-        ("STABILITY_BY_ENTRY", lambda m: np.abs(m).max()),
+        *formulas.each("STABILITY_BY_ENTRY", lambda m: abs(m[0, 0]), lambda m: np.abs(m).max()),
     ),
     "limit": (
         ("TOLERANCE_TOO_TIGHT", 1.0 - 1e-12),
-        ("TOLERANCE_TOO_LOOSE", 1.001),
-        ("TOLERANCE_TOO_LOOSE", 1.05),
-        ("TOLERANCE_TOO_LOOSE", 1.01),
-        ("TOLERANCE_TOO_LOOSE", 1.1),
-        ("TOLERANCE_TOO_LOOSE", 2.0),
+        *formulas.each("TOLERANCE_TOO_LOOSE", 1.001, 1.05, 1.01, 1.1, 2.0),
         *(("TOLERANCE_TOO_LOOSE", 1 + more) for more in (1e-4, 1e-5, 1e-6)),
     ),
     "unit": (
         ("RETURNS_Z", lambda z, omega: z),
-        ("OMEGA_SQUARED_IN_STEP", lambda z, omega: z / omega**2),
-        ("OMEGA_SQUARED_IN_STEP", lambda z, omega: z * omega),
+        *formulas.each("OMEGA_SQUARED_IN_STEP", lambda z, omega: z / omega**2, lambda z, omega: z * omega),
     ),
     "zero": (("NO_ZERO", None),),
     "none": (("NO_INFINITY", None), ("NO_INFINITY", 0.0)),
     "above": (("LARGEST_STABLE_STEP", True),),
-    "scales": (("START_NOT_SCALED", "out"), ("START_NOT_SCALED", "in"), ("START_NOT_SCALED", "times")),
-    "force": (
-        ("ACCELERATION_WRONG", lambda omega: omega),
-        ("ACCELERATION_WRONG", lambda omega: 1.0),
+    "scales": formulas.each(
+        "START_NOT_SCALED", (0, 1, 1), (1, 0, 0), (1, -1, -1), (0, 0, 1), (0, 1, 0), (1, 1, 0), (1, 0, 1)
     ),
+    "force": (*formulas.each("ACCELERATION_WRONG", lambda omega: omega, lambda omega: 1.0),),
     "probe": (("OMEGA_SQUARED_IN_STEP", lambda z, omega: z),),
     "dz": tuple(("LARGEST_STABLE_STEP", dz) for dz in (1.0, 2.5, 4.975, 9.95)),
     "last": (("SEARCH_ENDS_EARLY", 1.7), ("SEARCH_ENDS_EARLY", 2.5)),

@@ -83,8 +83,8 @@ from course.scoring.verdict import Status
 
 #: Files of an exercise, and of its solution beside ``mistakes.py``, that the table follows from.
 SOURCES = (("checking/paths.py",), ("formulas.py", "motions.py", "draws.py"))
-#: How many programs with two mistakes are kept for a task: students hardly write more, and the wheel would
-#: grow.
+#: How many programs with two mistakes are kept for a task, if the exercise's questions have no ``PAIRS``:
+#: students hardly write more, and the wheel would grow.
 _MOST_PAIRS = 260
 
 
@@ -185,7 +185,8 @@ def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None
             known = rows[name].setdefault(sums, {})
             if not is_right(made, name, sums) and not any(len(other) < len(codes) for other in known):
                 known.setdefault(codes, Row(codes, sums))
-    made.rows.update({name: _kept(some) for name, some in rows.items()})
+    most = getattr(questions, "PAIRS", _MOST_PAIRS)
+    made.rows.update({name: _kept(some, most) for name, some in rows.items()})
     return made
 
 
@@ -226,12 +227,12 @@ def _says(questions: ModuleType, task: str, function: Callable[..., Any]) -> int
     return len({*numbers_of(answers(local, task, calls)).round(9)})
 
 
-def _kept(rows: dict[tuple[float, ...], dict[tuple[str, ...], Row]]) -> tuple[Row, ...]:
+def _kept(rows: dict[tuple[float, ...], dict[tuple[str, ...], Row]], most: int) -> tuple[Row, ...]:
     """All programs with one mistake, and a limited number with two, spread evenly over all of them."""
     every = [row for known in rows.values() for row in known.values()]
     single = [row for row in every if len(row.codes) == 1]
     double = [row for row in every if len(row.codes) > 1]
-    return (*single, *double[:: max(1, math.ceil(len(double) / _MOST_PAIRS))])
+    return (*single, *double[:: max(1, math.ceil(len(double) / most))])
 
 
 def sums_of(questions: ModuleType, task: str, function: Callable[..., Any]) -> dict[str, tuple[float, ...]]:

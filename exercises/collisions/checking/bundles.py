@@ -224,6 +224,22 @@ def expect_velocities(found, wanted, finding, scale=None):
         )
 
 
+def expect_one_centre(submission, calls):
+    """Spheres whose centres coincide touch, and have any unit vector for a normal."""
+    values, parts = answers(submission, SPHERES, calls)
+    truth = [(True, np.eye(1, len(xa))[0], ra + rb) for xa, ra, _, rb in calls]
+    for args, (touching, normal, depth) in zip(calls, parts, strict=True):
+        finding = {
+            "input": shown(SPHERES, args),
+            "message": "Where two centres coincide, the result is wrong.",
+            "help": "They touch, as deep as the sum of the radii; any unit vector will do for the normal.",
+            "diagnose": lambda: probes.of_calls(SPHERES, calls, values, truth),
+        }
+        length = float(np.sqrt(normal @ normal))
+        kit.expect_close(length, 1.0, abs=1e-9, source=ROUNDING, quantity="length of the normal", **finding)
+        expect_contact((touching, normal, depth), (True, normal, args[1] + args[3]), finding)
+
+
 def expect_moment(found, wanted, finding):
     """A time of impact, or None."""
     if wanted is None or found is None:

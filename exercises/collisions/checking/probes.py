@@ -413,28 +413,7 @@ def _moment(task, calls, values, truth):
         return None
     if all(value is None for value in values):
         return "NEVER_FINDS_A_CONTACT"
-    return "QUADRATIC_MIXED" if _mixed(calls, values, truth) else _wrong_moment(calls, values, truth)
-
-
-#: Forms of the quadratic formula that are mixed of two: what stands before x . v in b, before a c, before a.
-_MIXED = ((1, 4, 1), (1, 4, 2), (2, 1, 1), (2, 1, 2))
-
-
-def _mixed(calls, values, truth):
-    """Whether all wrong times, two at least, are the roots of one mixed form."""
-    cases = zip(calls, values, truth, strict=True)
-    wrong = [(call, value) for call, value, right in cases if value is not None and not _same(right, value)]
-    return len(wrong) > 1 and any(
-        all(_same(_root(call, *form), value) for call, value in wrong) for form in _MIXED
-    )
-
-
-def _root(call, twice, four, over):
-    xa, va, ra, xb, vb, rb, _ = call
-    x, v = xb - xa, vb - va
-    a, b, c = float(v @ v), twice * float(x @ v), float(x @ x) - (ra + rb) ** 2
-    room = b * b - four * a * c
-    return (-b - math.sqrt(room)) / (over * a) if a and room >= 0 else None
+    return _wrong_moment(calls, values, truth)
 
 
 def _wrong_moment(calls, values, truth):

@@ -13,14 +13,14 @@ probes = kit.companion("integrators", "probes")
 
 
 def refused(rng):
-    """(t_end, h), not a whole number of steps: off by much, by a thousandth of a short step, by 1e-5 steps.
+    """(t_end, h), not a whole number of steps: off by much, by a thousandth of a short step, by 3e-6 steps.
 
     On both sides of a whole number, each kind.
 
     A difference in seconds, or one relative to the number of steps, would let the last two pass.
     """
     found = [((int(rng.integers(5, 30)) + side * rng.uniform(0.2, 0.45)) * 0.1, 0.1) for side in (1, -1)]
-    for excess in (1e-3, 1e-5, -1e-3, -1e-5):
+    for excess in (1e-3, 3e-6, -1e-3, -3e-6):
         h = float(rng.uniform(1e-4, 3e-4))
         found.append(((int(rng.integers(300, 500)) + excess) * h, h))
     return [(float(t_end), h) for t_end, h in found]
@@ -130,7 +130,7 @@ def expect_refusals(submission, state, durations):
                 "ValueError",
                 input={"t_end": t_end, "h": h},
                 message="A duration that is not a whole number of steps is not refused.",
-                diagnose=lambda: probes.named("DURATION_NOT_CHECKED"),
+                diagnose=lambda: probes.of_acceptance(submission, *state),
             )
         except kit.StudentFailure as failure:
             if failure.type not in _OTHER_REFUSALS:
@@ -216,7 +216,7 @@ def expect_clean(submission, task, system, t, whole, h):
     )
     _expect_plain_motion(submission, task, args, given)
     _expect_sum(submission, task, args)
-    _expect_the_same_again(submission, task, args, given)
+    _expect_the_same_again(submission, task, args, wanted, given)
     _expect_whole(submission, task, system, [t, *whole, h], wanted, given)
     between = [t, whole[0], whole[1] + 0.5, h]
     floats = kit.as_pair(submission.call(task, system, t, args[2], between[2], h), 2)
@@ -291,8 +291,11 @@ def _expect_sum(submission, task, args):
             )
 
 
-def _expect_the_same_again(submission, task, args, given):
-    """A step gives the same again after others that have something in common with it; none is overwritten."""
+def _expect_the_same_again(submission, task, args, end, given):
+    """A step gives the same again after others that have something in common with it; none is overwritten.
+
+    end: position and velocity after it.
+    """
     system, t, q, v, h = args
     others = (
         [system, t - h, v, q, h],  # ends where it begins, elsewhere
@@ -301,20 +304,24 @@ def _expect_the_same_again(submission, task, args, given):
         [system, t, q, v, 2 * h],
         [Oscillator(1.3), t, q, v, h],
     )
-    values = submission.call_each(task, [args, *(call for other in others for call in (other, args))])
-    # What is no number each time is the same each time.
-    first, *again = [np.nan_to_num(np.concatenate(kit.as_pair(value, 2))) for value in values[::2]]
-    for result in again:
-        kit.expect_array(
-            result,
-            first,
-            rel=1e-9,
-            source="rounding; a result may lie elsewhere in memory",
-            quantity="q_next and v_next",
-            input=given,
-            message="The same step, asked for again after another one, has another result.",
-            diagnose=lambda: probes.named("STALE_CACHE"),
-        )
+    # It begins where that step ends, under another acceleration.
+    onward = [Oscillator(1.3), t + h, *end, h]
+    for call, between in ((onward, [args]), (args, others)):
+        values = submission.call_each(task, [call, *(one for other in between for one in (other, call))])
+        # What is no number each time is the same each time.
+        first, *again = [np.nan_to_num(np.concatenate(kit.as_pair(value, 2))) for value in values[::2]]
+        told = given if call is args else {"accel": "a spring", "t": t + h, "q": end[0], "v": end[1], "h": h}
+        for result in again:
+            kit.expect_array(
+                result,
+                first,
+                rel=1e-9,
+                source="rounding; a result may lie elsewhere in memory",
+                quantity="q_next and v_next",
+                input=told,
+                message="The same step, asked for again after another one, has another result.",
+                diagnose=lambda: probes.named("STALE_CACHE"),
+            )
 
 
 def _spring(t, q, v):

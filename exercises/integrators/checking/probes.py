@@ -413,6 +413,18 @@ def of_refusal(submission, q0, v0, t_end):
     return named("REFUSES_DIVISIBLE" if t_end else "REFUSES_NO_DURATION")
 
 
+def of_acceptance(submission, q0, v0):
+    """Which durations are refused, where one that is no whole number of steps is not."""
+    refused = [
+        kit.attempt(lambda x=x: submission.call("integrate", IDENTITY, Oscillator(1.0), q0, v0, x, 0.25))
+        is None
+        for x in (0.9, 1.1)
+    ]
+    if any(refused):
+        return named("DURATION_LIMIT_TOO_WIDE" if all(refused) else "DURATION_CHECKED_ON_ONE_SIDE")
+    return named("DURATION_NOT_CHECKED")
+
+
 def of_whole_start(submission, args):
     """Why integrate fails on whole numbers, if it does not fail on the same numbers as floats."""
     step, accel, q0, v0, *rest = args
@@ -583,11 +595,12 @@ def of_order(submission, value, hs, errors):
 
 
 def _rounds(submission):
-    """Whether slopes that are no whole numbers come out as the ones beside them, all different."""
-    hs, slopes = np.array([0.3, 0.11, 0.05]), (1.4, 3.6, 6.4)
+    """Whether slopes of many digits come out with few of them, all rounded or cut in the same place."""
+    hs, slopes = np.array([0.3, 0.11, 0.05]), (1.41421356237, 3.61803398875, 6.43210987654)
     values = submission.call_each("observed_order", [(hs, 2.0 * hs**slope) for slope in slopes])
-    found = [float(kit.as_number(value)) for value in values]
-    return all(one.is_integer() and abs(one - slope) < 1 for one, slope in zip(found, slopes, strict=True))
+    found = np.array([float(kit.as_number(value)) for value in values])
+    near = (np.all(found == np.round(found, k)) and np.all(abs(found - slopes) < 10.0**-k) for k in range(9))
+    return any(near)
 
 
 # -- max_stable_step ----------------------------------------------------------------------------------

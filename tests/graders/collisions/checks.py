@@ -43,23 +43,7 @@ def test_sphere_contact_drawn(submission, rng):
 @pytest.mark.points(2)
 def test_sphere_same_centre(submission, rng):
     """Spheres with the same centre"""
-    calls = [draws.spheres(rng, d, 0.0) for d in (2, 3)]
-    values, parts = bundles.answers(submission, bundles.SPHERES, calls)
-    for args, (touching, normal, depth) in zip(calls, parts, strict=True):
-        wanted = True, normal, args[1] + args[3]
-        finding = {
-            "input": bundles.shown(bundles.SPHERES, args),
-            "message": "Where two centres coincide, the result is wrong.",
-            "help": "They touch, as deep as the sum of the radii; any unit vector will do for the normal.",
-            "diagnose": lambda: probes.of_calls(
-                bundles.SPHERES, calls, values, bundles.right(bundles.SPHERES, calls)
-            ),
-        }
-        length = float(np.sqrt(normal @ normal))
-        kit.expect_close(
-            length, 1.0, abs=1e-9, source=bundles.ROUNDING, quantity="length of the normal", **finding
-        )
-        bundles.expect_contact((touching, normal, depth), wanted, finding)
+    bundles.expect_one_centre(submission, [draws.spheres(rng, d, 0.0) for d in (2, 3)])
 
 
 @pytest.mark.task(bundles.PLANE)

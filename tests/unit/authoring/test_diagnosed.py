@@ -89,6 +89,23 @@ def test_a_question_that_nobody_can_be_asked_is_named(halving):
     assert any("question 2 of halve cannot be asked: too many" in one for one in problems())
 
 
+def test_questions_say_how_many_programs_with_two_mistakes_are_kept(halving, mini):
+    with mistakes(mini).open("a") as file:
+        file.write(
+            '\nmistakes("SHIFTED", "It is shifted.", "Add nothing.")\n\n\n@mistakes.more\ndef others():\n'
+            "    for n in range(1, 9):\n"
+            '        yield "halve", ("INTEGER_DIVISION", "SHIFTED"), lambda x, n=n: x // 2 + n\n'
+        )
+    text, kept = (halving / "questions.py").read_text(), []
+    for most in ("", "PAIRS = 4\n", "PAIRS = 2\n"):
+        (halving / "questions.py").write_text(text + most)
+        forget()
+        run(["author", "build", "halving"])
+        (rows,) = read_table(halving).rows.values()
+        kept.append(sum(len(row.codes) == 2 for row in rows))
+    assert kept == [8, 4, 2]
+
+
 def test_a_probe_that_was_loaded_before_knows_a_code_that_is_new(halving, mini):
     """One command loads it with the questions, then writes the words, then grades with both."""
     questions, hidden = halving / "questions.py", mini / "graders" / "halving" / "checks.py"

@@ -179,7 +179,9 @@ def test_lidar_nearest(submission):
     walls = np.array([*walls, [[-0.1, 1.2], [0.9, 1.2]], [[-0.5, -2.5], [0.5, -2.5]]])
     angles = np.array([0.0, 0.3, -0.49, 0.7, 1.8, math.pi / 2, -math.pi / 2])
     expected = [1.0, 2.0 / math.cos(0.3), 3.5 / math.cos(0.49), 5.0, 1.5 / math.sin(1.8), 1.2, 2.5]
-    value = submission.call("lidar", np.zeros(3), walls, angles, 5.0, 0.0, np.random.default_rng(1))
+    value = submission.call(
+        "lidar", np.zeros(3), walls, angles, 5, 0.0, np.random.default_rng(1)
+    )  # a whole number
     kit.expect_array(
         kit.as_vector(value, 7, "ranges"),
         expected,
@@ -240,7 +242,8 @@ def test_motor_limits(submission):
     commands = (0.5, -0.5, 4.0, 0.52, -0.52)
     message = "In a series of commands from a speed beyond u_max, the speed of the motor is wrong."
     for sign in (1.0, -1.0):
-        calls = [(sign * u, 0.1, 0.2, 10.0, 0.5) for u in commands]
+        # The last: a weak motor, whose u_max lies within its dead band.
+        calls = [*((sign * u, 0.1, 0.2, 10.0, 0.5) for u in commands), (sign * 4.0, 0.1, 0.2, 2.0, 3.0)]
         actuators.expect_motor(submission, sign * 25.0, calls, message)
     actuators.expect_motors(submission, (1.0, 6.0, 0.1, 0.2, 5.0, 0.5), (2.0, 7.0, 0.3, 0.4, 4.0, 6.5))
 

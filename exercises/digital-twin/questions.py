@@ -56,6 +56,7 @@ def _scans():
     )
     for pose, walls, beams in scenes:
         yield pose, walls, beams, 5.0, 0.0, np.random.default_rng(1)
+    yield here, _ROOM, fan, 4, 0.0, np.random.default_rng(1)  # a whole number
     # Every beam hits, or none does: in which order the numbers are drawn makes no difference.
     noisy = ((0.0, 5.0, 0.1), (1.97, 5.0, 0.2), (-2.96, 5.0, 0.3))
     for i, (x, reach, sigma) in enumerate(noisy):
@@ -80,6 +81,7 @@ def _commands():
         yield w, u, 0.3, 0.5, 10.0, 2.0
     for dt, tau in ((0.02, 0.7), (1.9, 0.3)):
         yield -2.0, 7.0, dt, tau, 8.0, 0.5
+    yield 1.0, 6.0, 0.3, 0.5, 4.0, 5.0  # u_max lies within the dead band
 
 
 def _plays():

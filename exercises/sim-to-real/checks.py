@@ -149,31 +149,32 @@ def test_identify_intervals(submission):
 @pytest.mark.points(7)
 def test_tune_public(submission):
     """How soon a fleet of the public type settles with the gains from tune"""
-    _expect_tuned(submission, cart.MATCHED, None, cart.PUBLIC_BEST_S, "the fleet settles later than it")
+    _expect_tuned(submission, "fleet", "the fleet settles later than it")
 
 
 @pytest.mark.task("tune")
 @pytest.mark.points(3)
 def test_tune_other_fleets(submission):
-    """The gains for other boxes, one heavy and late, one light and prompt"""
-    for box, best in ((cart.LOADED, cart.LOADED_BEST_S), (cart.PROMPT, cart.PROMPT_BEST_S)):
-        _expect_tuned(submission, box, box, best, "carts drawn from this box settle later than they")
+    """The gains for other boxes: heavy and late, light and prompt, light and late"""
+    for kind in ("loaded", "prompt", "late"):
+        _expect_tuned(submission, kind, "carts drawn from this box settle later than they")
 
 
-def _expect_tuned(submission, asked, drawn, best, who):
-    """Gains for the public cart and the box ``asked``, on carts drawn from ``drawn`` or from the fleet."""
-    estimate = cart.with_intervals(cart.PUBLIC, *((0.7, 1.9) if drawn else ()))
-    value = probes.patient(lambda: submission.call("tune", estimate, asked), "TUNE_TOO_SLOW")
+def _expect_tuned(submission, kind, who):
+    """Gains for the public cart and a box of this kind, on carts drawn from it."""
+    estimate = cart.with_intervals(cart.PUBLIC, *(() if kind == "fleet" else (0.7, 1.9)))
+    box = cart.BOXES[kind]
+    value = probes.patient(lambda: submission.call("tune", estimate, box), "TUNE_TOO_SLOW")
     gains = probes.gains_of(value)
     kit.expect_bounded(
-        cart.public_success(*gains, drawn)[0],
+        cart.public_success(*gains, kind)[0],
         low=judge.PASS,
         source="the README's",
         quantity="success: best mean settling over own",
         message=f"With these gains {who} could.",
         help=judge.LEAST_MEAN,
-        input={"kp": gains[0], "kd": gains[1], "box": asked, "best mean settling, s": best},
+        input={"kp": gains[0], "kd": gains[1], "box": box, "best mean settling, s": cart.PUBLIC_BEST_S[kind]},
         diagnose=lambda: probes.of_gains(
-            submission, estimate, asked, gains, lambda kp, kd: cart.public_success(kp, kd, drawn)[0]
+            submission, estimate, box, gains, lambda kp, kd: cart.public_success(kp, kd, kind)[0]
         ),
     )

@@ -197,7 +197,7 @@ def _tuned(submission):
     return kit.Section(
         "The fleet, tuned for",
         text=f"With kp {kp:.2f} N/m and kd {kd:.2f} N s/m the mean settling time is {settling.mean():.2f} s; "
-        f"the least that any gains reach is {cart.PUBLIC_BEST_S:.2f} s. Success: {success:.3f}, and "
+        f"the least that any gains reach is {cart.PUBLIC_BEST_S['fleet']:.2f} s. Success: {success:.3f}, and "
         f"{judge.PASS:g} passes. {failed} of 300 carts do not settle in 3 s or overshoot.",
         plot=kit.Plot(
             title="What the gains do on carts of the public type",

@@ -304,6 +304,11 @@ mistakes(
     },
 )
 mistakes(
+    "RANGES_WHOLE",
+    "Where r_max is a whole number, the distances lose their decimals.",
+    "np.full(n, r_max) holds whole numbers if r_max is one: say dtype=float, or begin with float(r_max).",
+).edit("lidar", {"noisy, r_max)": "noisy, r_max).astype(type(r_max))"})
+mistakes(
     "LAG_EULER_UNSTABLE",
     "The lag uses the fraction dt / tau, which is right only for short steps.",
     "Use the exact solution: after dt, the speed has covered the fraction 1 - exp(-dt / tau) of the way to the command.",
@@ -329,6 +334,11 @@ mistakes(
     "A command exactly equal to the dead band moves the motor.",
     "Where abs(u) <= deadband, the command counts as 0: the limit itself belongs to the dead band.",
 ).edit("motor_step", {"u) <= deadband else": "u) < deadband else"})
+mistakes(
+    "CLIPPED_BEFORE_DEADBAND",
+    "A command beyond the dead band moves nothing if u_max lies within it.",
+    "Compare u itself with the dead band, and only then clip it to u_max.",
+).edit("motor_step", {"abs(u) <= deadband": "min(abs(u), u_max) <= deadband"})
 mistakes(
     "BACKLASH_RATE_DEPENDENT",
     "The same motion in two steps ends elsewhere than in one, so the output depends on how finely it is sampled.",
@@ -504,37 +514,13 @@ mistakes(
     "The friction keeps its first value through a whole run in which it is wrong.",
     "A cart that falls behind has more friction than the twin assumes: subtract a small share of the surprise from the friction. When it rolls backwards, add it. In a Kalman filter that share comes from the covariance: keep it in the memory, and let its prediction contain what the friction does to the speed.",
 ).body(
-    "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        (x, v, b), _ = _predict(
-            (twin["position"], twin["speed"], twin["friction"]), np.zeros((3, 3)), twin["drive"], dt
-        )
-        x, v = float(x + 0.3 * (z - x)), float(v + 0.3 * (z - x))
-        return {**twin, "t": t_measured, "position": x, "speed": v}
-    """,
+    "sync", _observer({**_IN_PARTS, "    b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)\n": ""})
 )
 mistakes(
     "FRICTION_LEARNS_BACKWARDS",
     "When a cart that rolls forwards is ahead of its prediction, its estimated friction grows, where it should fall.",
     "Check the sign: a cart that is ahead, in the direction in which it rolls, has less friction.",
-).body(
-    "sync",
-    """
-        dt = t_measured - twin["t"]
-        if dt < 0:
-            return dict(twin)
-        (x, v, b), _ = _predict(
-            (twin["position"], twin["speed"], twin["friction"]), np.zeros((3, 3)), twin["drive"], dt
-        )
-        surprise = float(z - x)
-        b = min(max(float(b) + 0.15 * surprise, 0.05), 5.0)
-        x, v = float(x) + 0.3 * surprise, float(v) + 0.3 * surprise
-        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b}
-    """,
-)
+).body("sync", _observer({**_IN_PARTS, "- 0.15 * surprise * np.sign(v)": "+ 0.15 * surprise"}))
 mistakes(
     "SURPRISE_INVERTED",
     "When the cart rolls forwards, a measurement ahead of the twin moves the twin further back.",
@@ -693,25 +679,10 @@ mistakes(
     "For one friction at least, a twin slower than its target speed gets a smaller drive than at that speed.",
     'In friction * target_speed, the target speed counts, not that of the twin. If your code adds a correction, let it be a share of target_speed - twin["speed"], not of twin["speed"] - target_speed.',
 ).edit("command", {"* target_speed": '* target_speed + 1.5 * (twin["speed"] - target_speed)'})
-mistakes("STATE_KEPT").program(
-    "command",
-    """
-        _FIRST = {}
-
-
-        def command(twin, target_speed):
-            return _FIRST.setdefault(target_speed, twin["friction"]) * target_speed
-    """,
-).program(
-    "motor_step",
-    """
-        _SHARES = {}
-
-
-        def motor_step(w, u, dt, tau, u_max, deadband):
-            u = 0.0 if abs(u) <= deadband else min(max(u, -u_max), u_max)
-            return w + _SHARES.setdefault(dt, -math.expm1(-dt / tau)) * (u - w)
-    """,
+mistakes("STATE_KEPT").edit(
+    "command", {'twin["friction"]': 'command.__dict__.setdefault(target_speed, twin["friction"])'}
+).edit(
+    "motor_step", {"- math.expm1(-dt / tau)": "+ motor_step.__dict__.setdefault(dt, -math.expm1(-dt / tau))"}
 )
 mistakes(
     "GENERATOR_COPIED",
@@ -801,32 +772,14 @@ mistakes(
     "STATE_IN_MODULE",
     "The same call gives a different output after another call, so something is remembered in between, or random.",
     "Start from the state that is passed in. There may be two gears, each with its own state.",
-).program(
-    "backlash",
-    """
-        _STATE = []
-
-
-        def backlash(x, gap, state):
-            y = min(max(_STATE[-1] if _STATE else state, x - gap / 2), x + gap / 2)
-            _STATE[:] = [y]
-            return y, y
-    """,
-)
+).edit("backlash", {"y = min(max(state": 'y = backlash.y = min(max(getattr(backlash, "y", state)'})
 mistakes(
     "LAG_WITHOUT_DT",
     "A step a hundred times as long takes the speed no further, as if dt made no difference.",
     "The fraction is 1 - exp(-dt / tau), with the dt and the tau of this call; keep none from an earlier one.",
-).program(
+).edit(
     "motor_step",
-    """
-        _SHARE = {}
-
-
-        def motor_step(w, u, dt, tau, u_max, deadband):
-            u = 0.0 if abs(u) <= deadband else min(max(u, -u_max), u_max)
-            return w + _SHARE.setdefault("first", 1 - math.exp(-dt / tau)) * (u - w)
-    """,
+    {"- math.expm1(-dt / tau)": '+ motor_step.__dict__.setdefault("share", 1 - math.exp(-dt / tau))'},
 )
 mistakes(
     "WALLS_NOT_READ",
@@ -883,30 +836,7 @@ mistakes(
     "BIAS0_TIME_TOO_SHORT",
     "bias0 is the mean of too few samples from the start, so much of the white noise is left in it.",
     "Average about sqrt(3) N/K seconds: divide by dt to get the number of samples.",
-).body(
-    "fit_noise",
-    """
-        still = np.asarray(still, dtype=float)
-        sizes = np.unique(np.geomspace(1, len(still) // 10, 25).astype(int))
-        times, avar, weight = [], [], []
-        for size in sizes:
-            blocks = len(still) // size
-            means = still[: blocks * size].reshape(blocks, size).mean(axis=1)
-            d = np.diff(means)
-            times.append(size * dt)
-            avar.append(0.5 * np.mean(d**2))
-            weight.append(np.sqrt(len(d)))
-        T, avar, weight = np.array(times), np.array(avar), np.array(weight)
-        A = np.stack([1 / T, T / 3], axis=1)
-        scale = weight / avar
-        sol = np.linalg.lstsq(A * scale[:, None], avar * scale, rcond=None)[0]
-        N = math.sqrt(max(sol[0], 1e-20))
-        K = math.sqrt(max(sol[1], 1e-20))
-        first = int(round(math.sqrt(3) * N / K))
-        first = min(max(first, 1), len(still))
-        return {"noise_density": N, "bias_random_walk": K, "bias0": float(still[:first].mean())}
-    """,
-)
+).edit("fit_noise", {"(walk * dt)": "walk"})
 mistakes(
     "CORRECTION_JUMPS",
     "The correction is about as large just below the target speed as far below it: it jumps at the target, where it should go to zero.",
@@ -2014,7 +1944,12 @@ mistakes(
     "FRICTION_WITHOUT_SPEED",
     "In the prediction, friction takes as much speed off a fast cart as off a slow one.",
     "Multiply it by the speed: dv/dt = drive - friction * speed.",
-)
+).body("sync", _observer({"- b * v": "- b * x"}))
+mistakes(
+    "POSITION_OF_OLD_SPEED",
+    "The predicted position is that of a cart that keeps its old speed, although the predicted speed is another one.",
+    "With a = drive - friction * v, predict x + v * dt + a * dt**2 / 2, or go there in small steps.",
+).body("sync", _observer({"dt * v + dt * dt / 2 * a": "dt * v"}))
 mistakes(
     "FRICTION_ONE_WAY",
     "The friction moves in one direction only, whichever sign the surprise has.",

@@ -988,23 +988,9 @@ mistakes(
     "Try a fine grid of both times, tau from 0.02 to 0.15 s and latency from 0.02 to 0.20 s, fit with each pair, keep the one with the smallest residual, and refine around it.",
 ).around(
     "identify",
-    """
-        best = None
-        for tau in np.arange(0.06, 0.061, 0.01):
-            impulse = motor_impulse(u, tau)
-            for late in np.arange(0.02, 0.201, 0.005):
-                columns = [delayed(impulse, late), cumulative(np.sign(y)), cumulative(y)]
-                X, v = in_blocks(np.stack(columns, axis=1)), in_blocks(y)
-                k = X.shape[2]
-                theta, left, *_ = np.linalg.lstsq(X.reshape(-1, k), v.reshape(-1))
-                if best is None or left[0] < best[0]:
-                    best = left[0], tau, late, theta
-        _, tau, late, theta = best
-        m = 1 / theta[0]
-        found = {"m": m, "b": -theta[2] * m, "Fc": -theta[1] * m, "tau": tau, "latency": late, "lag": tau + late}
-        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
-        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
-    """,
+    _by_search("delayed(impulse, late), cumulative(y), cumulative(np.sign(y))").replace(
+        "np.arange(0.02, 0.151, 0.01)", "[0.06]"
+    ),
 )
 mistakes(
     "NOISE_DIFFERENTIATED",
@@ -1102,15 +1088,9 @@ mistakes(
     "kp is the same number for several of the carts and boxes that were asked, and gains with a larger kp do better.",
     "Let the search go on: kp from 2 to 40, with kd/kp from 0.2 to 0.8. The motor's limit is part of rollout, and the best gains may reach it.",
     kind="fact",
-).body(
+).edit(
     "tune",
-    """
-        rng = np.random.default_rng(2)
-        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
-        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(0.5, 3.5, 8), np.linspace(0.25, 0.8, 6)))
-        cost = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        return {"kp": float(kp[cost.argmin()]), "kd": float((kp * ratio)[cost.argmin()])}
-    """,
+    {"np.geomspace(2, 40, 12)": "np.geomspace(0.5, 3.5, 8)", "kp * np.geomspace(0.8, 1.25, 5)": "[kp]"},
 )
 mistakes(
     "ROLLOUT_GIVEN_RATIO",
@@ -1128,32 +1108,18 @@ mistakes(
     "With these gains more than half of the carts count as 3 s, but the soonest cart, or the mean of those that settle, is sooner than with the gains that are best for all. So it is with a mean that leaves out every cart that counts as 3 s, and by chance with gains for other carts.",
     "Take the mean over all carts, with 3 s for each that fails. If you do, look at the carts: each parameter is the estimate's value times a factor drawn from the box.",
     kind="fact",
-).body(
+).edit(
     "tune",
-    """
-        rng = np.random.default_rng(0)
-        box = {name: np.log(randomization[name]) for name in NAMES}
-        carts = {name: estimate[name][0] * np.exp(rng.uniform(*box[name], 100)) for name in NAMES}
-        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 16), np.linspace(0.2, 0.75, 12)))
-        times = rollout(kp, kp * ratio, carts, np.random.default_rng(1))
-        i = np.argmin(np.min(times, axis=0))
-        return {"kp": float(kp[i]), "kd": float(kp[i] * ratio[i])}
-    """,
-    also=("SEARCH_ENDED_EARLY",),
-).body(
+    {
+        "np.random.default_rng(1)).mean(axis=0)\n        return": "np.random.default_rng(1)).min(axis=0)\n        return"
+    },
+    also=("SEARCH_ENDED_EARLY", "NO_CART_SETTLES"),
+).edit(
     "tune",
-    """
-        rng = np.random.default_rng(0)
-        box = {name: np.log(randomization[name]) for name in NAMES}
-        carts = {name: estimate[name][0] * np.exp(rng.uniform(*box[name], 200)) for name in NAMES}
-        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 16), np.linspace(0.2, 0.75, 12)))
-        times = rollout(kp, kp * ratio, carts, np.random.default_rng(1))
-        never = times >= 3.0
-        settled = np.where(never, 0.0, times).sum(axis=0) / np.maximum(np.sum(~never, axis=0), 1)
-        i = np.argmin(np.where(never.all(axis=0), 3.0, settled))
-        return {"kp": float(kp[i]), "kd": float(kp[i] * ratio[i])}
-    """,
-    also=("SEARCH_ENDED_EARLY",),
+    {
+        "np.random.default_rng(1)).mean(axis=0)\n        return": "np.random.default_rng(1))\n        mean = np.ma.masked_equal(mean, 3.0).mean(axis=0).filled(3.0)\n        return"
+    },
+    also=("SEARCH_ENDED_EARLY", "NO_CART_SETTLES"),
 )
 mistakes(
     "EXCITATION_NOT_FULL",
@@ -1185,6 +1151,18 @@ mistakes(
     "Draw each parameter between value * low and value * high, and take the mean over all carts.",
 ).around("tune", "return _right(estimate, {k: [high, high] for k, (_, high) in randomization.items()})")
 mistakes(
+    "WIDTH_NOT_READ",
+    "The gains stay exactly as they are when the box gets narrower or wider about the same middle.",
+    "Draw each parameter between value * low and value * high of the box that is passed in.",
+    kind="fact",
+).around(
+    "tune",
+    """
+        middles = {k: math.sqrt(low * high) for k, (low, high) in randomization.items()}
+        return _right(estimate, {k: [x / 1.5, 1.5 * x] for k, x in middles.items()})
+    """,
+)
+mistakes(
     "KD_FOLLOWS_KP",
     "kd is the same in all answers, or follows from kp in the same way.",
     "Search over pairs: kp from 2 to 40 and kd/kp from 0.2 to 0.8. A formula of kp, mass and friction knows neither the lag nor the latency.",
@@ -1198,7 +1176,7 @@ mistakes(
         i = rollout(kp, kd, carts, np.random.default_rng(1)).mean(axis=0).argmin()
         return {"kp": float(kp[i]), "kd": float(kd[i])}
     """,
-)
+).edit("tune", {"np.linspace(0.25, 0.7, 8)": "[0.35]", "ratio + np.linspace(-0.06, 0.06, 5)": "[0.35]"})
 mistakes(
     "ESTIMATE_KEPT",
     "Asked twice in a row about one recording, your code answers the same, but something else after recordings of other carts.",
@@ -1464,13 +1442,21 @@ mistakes(
     "Here and for four other questions, your gains suit carts whose parameters all lie at an end of their range better than carts drawn from all of it.",
     "Draw each factor anywhere between low and high: np.exp(rng.uniform(np.log(low), np.log(high), n)). If you already do, search more finely, and compare gains by the mean settling time of all carts.",
     kind="consequence",
-).edit("tune", {"(rng.permutation(200) + 0.5) / 200": "rng.integers(0, 2, 200)"})
+).edit(
+    "tune",
+    {"(rng.permutation(200) + 0.5) / 200": "rng.integers(0, 2, 200)"},
+    also=("SEARCH_ENDED_EARLY", "FAILURES_LEFT_OUT"),
+)
 mistakes(
     "FACTORS_DIVIDE",
     "Here and for four other questions, your gains suit carts whose parameters are the estimate's values divided by factors from the box, and not those with the products.",
     "Multiply: value * factor. If you already do, search more finely, and compare gains by the mean settling time of all carts.",
     kind="consequence",
-).edit("tune", {"estimate[name][0] * np.exp": "estimate[name][0] / np.exp"}, also=("NO_CART_SETTLES",))
+).edit(
+    "tune",
+    {"estimate[name][0] * np.exp": "estimate[name][0] / np.exp"},
+    also=("NO_CART_SETTLES", "FAILURES_LEFT_OUT", "SEARCH_ENDED_EARLY"),
+)
 mistakes(
     "FACTORS_ADDED",
     "Here and for four other questions, your gains suit carts whose parameters are the estimate's values times 1 + factor, and not those of the box.",

@@ -285,10 +285,10 @@ def expect_twin_contract(submission, rng):
     run = scenes.measured(cart, sign * friction, scenes.moments(rng, 16.0), rng, late=0.3)
     twin = new_twin(0.6, sign * friction, speed=sign)
     _expect_small_memory(submission, twin, run.calls)
-    folded = submission.fold("sync", twin, run.calls)
-    twins.states(folded)
     in_time, late = (int(np.flatnonzero(run.late == when)[5]) for when in (False, True))
     picks = [late, 3, in_time, 3]
+    folded = submission.fold("sync", twin, run.calls[: max(picks) + 1])
+    twins.states(folded)
     again = submission.call_each("sync", [(folded[i], *run.calls[i]) for i in picks])
     kit.expect_true(
         all(twins.same(value, folded[i + 1]) for value, i in zip(again, picks, strict=True)),
@@ -315,10 +315,10 @@ def expect_twin_contract(submission, rng):
 
 def _expect_small_memory(submission, twin, calls):
     """Looked at after these measurements and after half of them; all that it held on the way is too much."""
-    held, before = (
-        twins.numbers_in(_folded(submission, twin, some, keep=scenes.SEEN)[-1]["memory"])
-        for some in (calls, calls[: len(calls) // 2])
-    )
+    half = len(calls) // 2
+    middle = _folded(submission, twin, calls[:half], keep=scenes.SEEN)[-1]
+    last = _folded(submission, middle, calls[half:], keep=scenes.SEEN)[-1]
+    held, before = (twins.numbers_in(each["memory"]) for each in (last, middle))
     for most, code, message in (
         (1.5 * before + 20, "MEMORY_GROWS", "The memory grows with the length of the run."),
         (MEMORY_WITHIN, "MEMORY_TOO_LARGE", "The memory holds more numbers than the README allows."),

@@ -178,8 +178,8 @@ def errors(u, y, tau, late):
     """Standard errors of m, b, Fc, tau, latency and lag for a fit near these times, {how: (6,)}.
 
     "": the README's jackknife. "kept out": each refit also lacks the blocks that were left out before.
-    "held": each refit has the times of all blocks. "formula": what the usual formula says of m, of blocks
-    and of the whole recording, with the times fitted or known, (4,).
+    "held": each refit has the times of all blocks. "formula": what the usual formula says of m, as a
+    share, of blocks and of the whole recording, with the times fitted or known, (4,).
     """
     d, size = 0.001, round(1 / H)
     impulse, later, sooner = (_impulse(u, each) for each in (tau, tau + d, tau - d))
@@ -211,10 +211,10 @@ def errors(u, y, tau, late):
 
 
 def _by_formula(columns, target):
-    """The usual standard error of m, where the errors of all samples are independent."""
+    """The usual standard error of m as a share of it, where the errors of all samples are independent."""
     theta = np.linalg.lstsq(columns, target)[0]
     left = np.sum((target - columns @ theta) ** 2) / (len(target) - columns.shape[1])
-    return math.sqrt(left * np.linalg.pinv(columns.T @ columns)[0, 0]) / theta[0] ** 2
+    return math.sqrt(left * np.linalg.pinv(columns.T @ columns)[0, 0]) / abs(theta[0])
 
 
 def _impulse(u, tau):

@@ -381,7 +381,9 @@ def _of_widths(estimates, recordings):
         return "INTERVAL_ROOT_MISSING"
     if abs(math.log(times(kept_out, 0.2) / 2.1)) < 0.12 and np.median(half[:, 0] / own[:, 0]) > 4.2:
         return "BLOCKS_KEPT_OUT"
-    formula = half[:, :1] / np.array([each["formula"] for each in made])
+    formula = (
+        half[:, :1] / [[each["m"][0]] for each in estimates] / np.array([each["formula"] for each in made])
+    )
     alike = np.ptp(formula, axis=0) < 0.06 * formula.mean(axis=0)
     return "INTERVAL_BY_FORMULA" if np.any(alike & (np.abs(formula.mean(axis=0) - 2) < 0.15)) else None
 
@@ -632,11 +634,11 @@ def of_gains(submission, estimate, box, gains, success):
         # Gains that stay for heavy carts too are at the search's edge, which the box cannot move.
         ("RANDOMIZATION_IGNORED", lambda: same[3] and not same[0] and unmoved(*boxes)),
         ("KP_STAYS", lambda: alike > 1 and not all(same) and larger_is_better()),
+        ("KD_FOLLOWS_KP", lambda: _follows([gains, *other], [estimate, *(asked for asked, _ in questions)])),
     )
     rest = (
         ("MEDIAN_CART", lambda: summed() == "MEDIAN_CART"),
         ("FAILURES_LEFT_OUT", lambda: failing() is not None),
-        ("KD_FOLLOWS_KP", lambda: _follows([gains, *other], [estimate, *(asked for asked, _ in questions)])),
     )
     code = next((code for code, seen in looks if seen()), None) or _unread(submission, estimate, box, gains)
     code = code or _best_for_others([(estimate, box), *questions], [gains, *other])
@@ -705,13 +707,17 @@ def _of_sums(questions, answers):  # noqa: PLR0911 - one return per mistake
 
 
 def _follows(pairs, estimates):
-    """Whether kd is the same in each answer, or in the same proportion to kp or to the root of kp m."""
+    """Whether kd is the same in each answer, or in the same proportion to kp or to the root of kp m.
+
+    A proportion at the edge of the README's grid is where a search ended.
+    """
     kp, kd = np.array(pairs).T
     m, b = (np.array([estimate[name][0] for estimate in estimates]) for name in ("m", "b"))
     if np.ptp(kp) < 1e-3 * np.max(kp):
         return False
-    root = np.sqrt(kp * m)
-    return any(np.ptp(x) < 1e-6 * np.max(np.abs(x)) for x in (kd, kd / kp, kd / root, (kd + b) / root))
+    root, inside = np.sqrt(kp * m), 0.27 < kd[0] / kp[0] < 0.68
+    laws = (kd, *([kd / kp] if inside else []), kd / root, (kd + b) / root)
+    return any(np.ptp(x) < 1e-6 * np.max(np.abs(x)) for x in laws)
 
 
 def _unread(submission, estimate, box, gains):
@@ -734,6 +740,10 @@ def _unread(submission, estimate, box, gains):
     def shifted(name, factor):
         return estimate, {**box, name: [factor * end for end in box[name]]}
 
+    def widened(times):
+        middles = {k: math.sqrt(low * high) for k, (low, high) in box.items()}
+        return estimate, {k: [x * (end / x) ** times for end in box[k]] for k, x in middles.items()}
+
     lag = {**estimate, "lag": [2.0 * x for x in estimate["lag"]]}, box
     kept = same(lag, lag, shifted("m", 1.8), shifted("latency", 1.8), lows(lambda low, high: low / 3))
     if kept is None:  # no time was left for so many calls
@@ -750,6 +760,7 @@ def _unread(submission, estimate, box, gains):
             kept[4] and not kept[2] and _is_best(*gains, estimate, corner) and highs_read(),
             [lows(lambda low, high: 0.9 * high)],
         ),
+        ("WIDTH_NOT_READ", not (kept[2] and kept[3]), [widened(times) for times in (0.2, 0.0, 1.6)]),
     )
     return next((code for code, seen, again in tries if seen and all(same(*again) or [False])), None)
 

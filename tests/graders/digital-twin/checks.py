@@ -147,6 +147,7 @@ def test_motor_unknown(submission, rng):
     commands = rng.permutation([*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, *edges])
     steps = tau * rng.permutation(np.resize([0.001, 0.01, 0.1, 0.7, 2.0, 5.0], len(commands)))
     calls = [(float(u), float(dt), tau, u_max, dead) for u, dt in zip(commands, steps, strict=True)]
+    calls.append((2.0 * u_max, 0.7 * tau, tau, u_max, 1.5 * u_max))
     actuators.expect_motor(submission, 0.3 * u_max, calls, _MOTOR)
     first = 0.1 * u_max, 0.8 * u_max, 0.3 * tau, tau, 0.7 * u_max, dead
     actuators.expect_motors(

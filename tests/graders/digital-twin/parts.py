@@ -45,7 +45,7 @@ def expect_hall(submission, rng):
     calls += [(*call, 0.0, rng) for call in bundles.one_by_one(calls[0][:4], others)]
     # A wall of a metre, square to a beam: the cross product of their directions is 1, or -1.
     x, ends = rng.uniform(0.5, 2.0), rng.permutation([-0.5, 0.5])
-    calls.append((np.zeros(3), np.array([[[x, y] for y in ends]]), np.array([0.0]), r_max, 0.0, rng))
+    calls.append((np.zeros(3), np.array([[[x, y] for y in ends]]), np.array([0.0]), 3, 0.0, rng))  # an int
     message = "In an unknown hall, without noise, a distance is wrong."
     for call, value in zip(calls, submission.call_each("lidar", calls), strict=True):
         expect_ranges(submission, value, *call[:4], message)

@@ -94,7 +94,14 @@ SUMS = [
         ),
         (None, "sync", [("0.05), 5.0)", "0.3), 0.9)")]),  # where a friction stops at a limit is asked for
         (None, "sync", [("- 0.15", "- 0.5")]),
-        ("FRICTION_SHARE_TOO_LARGE", "sync", [("- 0.15", "- 3.0")]),
+        *(("FRICTION_SHARE_TOO_LARGE", "sync", [("- 0.15", share)]) for share in ("- 3.0", "- 1.5")),
+        ("FRICTION_WITHOUT_SPEED", "sync", [("- b * v", "- b * x")]),
+        ("FRICTION_NOT_IN_MODEL", "sync", [(" - b * v", "")]),
+        (
+            "POSITION_OF_OLD_SPEED",
+            "sync",
+            [("x + dt / n * v + (dt / n) ** 2 / 2 * a", "x + dt / n * twin['speed']")],
+        ),
         ("FRICTION_LEARNS_SLOWLY", "sync", [("- 0.15", "- 0.02")]),
     ],
 )

@@ -679,10 +679,25 @@ mistakes(
     "For one friction at least, a twin slower than its target speed gets a smaller drive than at that speed.",
     'In friction * target_speed, the target speed counts, not that of the twin. If your code adds a correction, let it be a share of target_speed - twin["speed"], not of twin["speed"] - target_speed.',
 ).edit("command", {"* target_speed": '* target_speed + 1.5 * (twin["speed"] - target_speed)'})
-mistakes("STATE_KEPT").edit(
-    "command", {'twin["friction"]': 'command.__dict__.setdefault(target_speed, twin["friction"])'}
-).edit(
-    "motor_step", {"- math.expm1(-dt / tau)": "+ motor_step.__dict__.setdefault(dt, -math.expm1(-dt / tau))"}
+mistakes("STATE_KEPT").program(
+    "command",
+    """
+        _FIRST = {}
+
+
+        def command(twin, target_speed):
+            return _FIRST.setdefault(target_speed, twin["friction"]) * target_speed
+    """,
+).program(
+    "motor_step",
+    """
+        _SHARES = {}
+
+
+        def motor_step(w, u, dt, tau, u_max, deadband):
+            u = 0.0 if abs(u) <= deadband else min(max(u, -u_max), u_max)
+            return w + _SHARES.setdefault(dt, -math.expm1(-dt / tau)) * (u - w)
+    """,
 )
 mistakes(
     "GENERATOR_COPIED",

@@ -36,7 +36,7 @@ from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage, image_of
 from course.printable import counted, some
 from course.progress.history import fingerprint
-from course.progress.workspace import Recorder, Workspace, not_recorded
+from course.progress.workspace import Recorder, Workspace, not_recorded, same_text
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
 from course.strangers import read_bytes
@@ -291,7 +291,9 @@ def _not_handed_in(path: Path, exercise: Exercise) -> Iterable[str]:
                 f"{path.name} is not what is handed in: that is {workspace.shown(own)}. Give this notebook"
                 " that name, or copy your cells there."
             )
-        elif module.is_file() and workspace.is_edited(exercise.place, module.name, module.read_bytes()):
+            return
+        given = workspace.given(exercise.place, module.name) or exercise.stub_path.read_bytes()
+        if module.is_file() and not same_text(given, module.read_bytes()):
             yield f"{module.name} was worked in too: that is what is handed in, and not {path.name}."
 
 

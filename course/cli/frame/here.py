@@ -23,7 +23,7 @@ from course.handed_in.limits import must_fit
 from course.ids import WARM_UPS
 from course.progress.history import History, Standing, history_of
 from course.progress.store import Event
-from course.progress.workspace import Recorder, Workspace, write_atomically
+from course.progress.workspace import Recorder, Workspace, same_text, write_atomically
 from course.strangers import read_bytes
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ class Here:
             copies = [path for path in others if path.suffix == notebook.suffix]
             for path in filter(Path.is_file, (*copies, notebook, own) if copies else ()):
                 data = path.read_bytes()
-                own_work = path == own and self.workspace.is_edited(exercise.place, own.name, data)
+                own_work = path == own and not same_text(self.stub(exercise), data)
                 if own_work or worked_in(data, exercise.id):
                     edited[data] = path.stat().st_mtime, path.name
             last = max(edited.values(), default=(0.0, own.name))[1]

@@ -49,10 +49,12 @@ def where_right(right: Sequence[Mapping[str, Any]], wrong: Sequence[Mapping[str,
         What follows "it is right"; "" if there is no such thing, or more than one.
     """
     names = sorted(set.intersection(*(set(given) for given in (*right, *wrong))))
+    # One wrong result makes no rule: another of its kind may be right.
+    among = ", and wrong where" if len(wrong) > 1 else "; the other is the only one where"
     found = []
     for said, respects, these, those in (
         (", where", _LUCKY, right, wrong),
-        (", and wrong where", _FORGOTTEN, wrong, right),
+        (among, _FORGOTTEN, wrong, right),
     ):
         for name, (is_so, holds) in itertools.product(names, respects):
             if all(holds(one[name]) for one in these) and not any(holds(one[name]) for one in those):

@@ -12,11 +12,17 @@ from course.scoring.explain.inputs import other_inputs, where_right
 @pytest.mark.parametrize(
     ("right", "wrong", "said"),
     [
-        ([{"x": 2.0}, {"x": 3.0}], [{"x": -1.0}], ", and wrong where `x` is negative"),
+        ([{"x": 2.0}, {"x": 3.0}], [{"x": -1.0}, {"x": -2.0}], ", and wrong where `x` is negative"),
+        # Of one wrong result it is said as what it is, for another of its kind may be right.
+        ([{"x": 2.0}, {"x": 3.0}], [{"x": -1.0}], "; the other is the only one where `x` is negative"),
         ([{"l": 1.0}], [{"l": 2.0}, {"l": 0.5}], ", where `l` is 1"),
-        ([{"e": 0.5}], [{"e": 0}], ", and wrong where `e` is 0"),
+        ([{"e": 0.5}], [{"e": 0}], "; the other is the only one where `e` is 0"),
         ([{"p": [1.0, 2.0]}], [{"p": [1.0]}, {"p": [3.0, 4.0, 5.0]}], ", where `p` has two values"),
-        ([{"p": [1.0, 2.0]}], [{"p": [1.0, -2.0]}], ", and wrong where `p` has a negative value"),
+        (
+            [{"p": [1.0, 2.0]}],
+            [{"p": [1.0, -2.0]}, {"p": [-1.0, 2.0]}],
+            ", and wrong where `p` has a negative value",
+        ),
         ([{"rule": "mean"}, {"rule": True}], [{"rule": "sum"}], ""),
         # Which of the two it is cannot be seen.
         ([{"x": 2.0, "v": 2.0}], [{"x": -1.0, "v": -1.0}], ""),
@@ -64,8 +70,8 @@ def test_an_argument_with_a_default_is_kept_as_it_was_given():
         (
             "clear-the-forces",
             "def final_speed(mass, force, h, n):\n    return max(force, 0.0) * h * n / mass\n",
-            "The speed after n steps is wrong. For 2 of 3 inputs it is right, and wrong where `force` is"
-            " negative.",
+            "The speed after n steps is wrong. For 2 of 3 inputs it is right; the other is the only one"
+            " where `force` is negative.",
         ),
         (
             "equal-work",

@@ -97,11 +97,7 @@ def test_questions_say_how_many_programs_with_two_mistakes_are_kept(halving, min
             '        yield "halve", ("INTEGER_DIVISION", "SHIFTED"), lambda x, n=n: x // 2 + n\n'
         )
     text, kept = (halving / "questions.py").read_text(), []
-    for most in (
-        "",
-        "PAIRS = 4\n",
-        "PAIRS = 1 + 1\n",
-    ):  # no two of a length
+    for most in ("", "PAIRS = 4\n", "PAIRS = 1 + 1\n"):  # no two of a length
         (halving / "questions.py").write_text(text + most)
         forget()
         run(["author", "build", "halving"])

@@ -179,9 +179,8 @@ def test_lidar_nearest(submission):
     walls = np.array([*walls, [[-0.1, 1.2], [0.9, 1.2]], [[-0.5, -2.5], [0.5, -2.5]]])
     angles = np.array([0.0, 0.3, -0.49, 0.7, 1.8, math.pi / 2, -math.pi / 2])
     expected = [1.0, 2.0 / math.cos(0.3), 3.5 / math.cos(0.49), 5.0, 1.5 / math.sin(1.8), 1.2, 2.5]
-    value = submission.call(
-        "lidar", np.zeros(3), walls, angles, 5, 0.0, np.random.default_rng(1)
-    )  # a whole number
+    # Its range is a whole number.
+    value = submission.call("lidar", np.zeros(3), walls, angles, 5, 0.0, np.random.default_rng(1))
     kit.expect_array(
         kit.as_vector(value, 7, "ranges"),
         expected,

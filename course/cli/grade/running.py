@@ -31,8 +31,6 @@ from course.printable import command, counted, one_line
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import LARGEST_SEED, format_points, in_points
 
-_MOST_TROUBLED = 20
-
 
 class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=True):
     """The last line of ``grade run``: counts over the whole gradebook."""
@@ -436,8 +434,7 @@ def show_unjudged(console: Console, sentences: Sequence[str]) -> None:
     """The checks whose own code broke on a submission, which is a reason to look at the check."""
     if sentences:
         console.line(("Checks whose own code broke on a submission (its result stands):", "bold"))
-    for sentence in sentences[:_MOST_TROUBLED]:
-        console.line(sentence, indent=2)
+    opt.show_first(console, sentences, lambda sentence: console.line(sentence, indent=2))
 
 
 def _show_result(

@@ -692,7 +692,7 @@ mistakes(
 )
 mistakes(
     "REFUSES_NEARLY_WHOLE",
-    "Half a millionth of a step too much is refused already.",
+    "Half a millionth of a step off a whole number is refused already.",
     "With N = round(t_end / h), raise ValueError only if abs(t_end / h - N) > 1e-6.",
     kind="fact",
 ).edit("integrate", {"> 1e-6": "> 1e-9"})

@@ -89,6 +89,16 @@ mistakes(
     "The limit is mu times the normal impulse.",
 ).edit("friction", {"size <= most": "size <= normal"})
 mistakes(
+    "SQUARE_COMPARED",
+    "You compare the square of the length with the limit.",
+    "Compare the length itself: math.hypot(*wanted).",
+).edit("friction", {"size <= most": "size * size <= most"})
+mistakes(
+    "COMPONENTS_COMPARED",
+    "You compare each component with the limit, and not the length.",
+    "Compare math.hypot(*wanted): together they may be beyond the limit though neither is.",
+).edit("friction", {"size <= most": "max(map(abs, wanted)) <= most"})
+mistakes(
     "MU_TIMES_WANTED",
     "Beyond the limit you multiply wanted by mu.",
     "Give it the length of the limit there, whatever its own length is.",

@@ -23,7 +23,7 @@ mistakes(
 )
 mistakes(
     "NEGATIVE_SHARE",
-    "A negative energy gives a negative drift.",
+    "A negative first energy gives a negative drift.",
     "Divide by the size of the first value.",
 ).edit("worst_drift", {"abs(energies[0])": "energies[0]"})
 mistakes(

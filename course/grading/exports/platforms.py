@@ -29,7 +29,7 @@ from course.grading.exports.selection import (
     select,
 )
 from course.grading.results.effective import Effective, Results
-from course.grading.results.roster import Column, as_there, in_english, moodle_key, read_text
+from course.grading.results.roster import Column, as_there, delimiter_of, in_english, moodle_key, read_text
 from course.printable import counted, one_line, some
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, format_points, in_points
 
@@ -299,9 +299,11 @@ def _same(theirs: str, ours: str) -> bool:
 
 
 def _read(path: Path) -> tuple[list[str], list[list[str]]]:
+    """The headings and the rows. A spreadsheet may have saved it with semicolons; Moodle takes commas alone."""
     rows: list[list[str]] = []
+    text = read_text(path, _wrong)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter_of(text), strict=True)
     try:
-        reader = csv.reader(io.StringIO(read_text(path, _wrong), newline=""), strict=True)
         headings = next(reader, [])
         missing = [name for name in (_KEY, _GRADE, _MODIFIED) if name not in in_english(headings)]
         if missing:

@@ -278,15 +278,19 @@ def read_table(
         wrong: makes the error that is raised, from why the file is none that can be read.
     """
     text = read_text(path, wrong)
-    first = text.partition("\n")[0]
-    delimiter = max(",;\t", key=first.count)
-    reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter_of(text), strict=True)
     try:
         given = [str(name).strip() for name in reader.fieldnames or ()]
         reader.fieldnames = headings = in_english(given)
         return given, headings, [(reader.line_num, row) for row in reader]
     except csv.Error as error:
         raise wrong(path, f"line {reader.line_num + 1}: {error}") from None
+
+
+def delimiter_of(text: str) -> str:
+    """What parts the cells of a table: it is the most frequent in the headings."""
+    first = text.partition("\n")[0]
+    return max(",;\t", key=first.count)
 
 
 def read_text(path: Path, wrong: Callable[[Path, str], UsageError]) -> str:

@@ -111,6 +111,15 @@ def test_it_is_filled_in_and_everything_else_is_as_it_came(tmp_path, out):
     assert read_roster(tmp_path / "back.csv").people == read_roster(sheet).people
 
 
+def test_a_worksheet_that_a_spreadsheet_saved_with_semicolons_goes_back_with_commas(tmp_path, out):
+    """Moodle's form for it asks for no separator, and its reader takes commas."""
+    text = io.StringIO(newline="")
+    csv.writer(text, delimiter=";").writerows([HEADINGS, *SHEET])
+    (tmp_path / "sheet.csv").write_text(text.getvalue(), "utf-8-sig")
+    filled(out, tmp_path / "sheet.csv", tmp_path / "back.csv")
+    assert taken_by_moodle(tmp_path / "back.csv", 100.0)["101"][0] == 100.0
+
+
 @pytest.mark.parametrize("reason", ['said "x\\"', "a path, C:\\"])
 def test_feedback_with_backslashes_is_one_cell_to_moodle(tmp_path, out, reason):
     """A cell that ended in a backslash took the next one with it, and Moodle refused the whole file."""

@@ -142,6 +142,8 @@ def _raised(case):
 def _numbers(key, known, ends):
     cases = known + ends if key in _OF_ENDS else known
     numbers = [-4e3 if _raised(case) else _number(key, case.measured(key)) for case in cases]
+    if key == "order":
+        numbers.append(float(all(map(bench.ends_apart, cases))))
     if key == "symplectic":
         numbers += [float(min(map(_columns_at_one_half, cases))), float(any(map(_tiny_single_step, cases)))]
     if key == "rest_penetration":

@@ -138,7 +138,7 @@ mistakes(
 mistakes(
     "DAMPING_OF_ENVELOPE",
     "The rate is about half of what it should be.",
-    "A spring's amplitude decays at half the rate. Take a free body, its speeds at the start and at the end, and the time between.",
+    "The mean speed of a run, and the amplitude of a spring, fall at half the rate. Take a free body, its speeds at the start and at the end, and the time between.",
 ).body(
     "characterise",
     """
@@ -305,7 +305,7 @@ mistakes(
 ).edit("characterise", {"return -v": "return v"}, of="_slow_hit")
 mistakes(
     "RESTITUTION_SQUARED",
-    "The result is the square of the right ratio, or its square root.",
+    "The ratio is squared, or its square root is taken.",
     "Divide the speed after the hit by the speed before it, without a square.",
 ).edit("characterise", {"-v[hit][0] / v[hit - 1][0]": "(v[hit][0] / v[hit - 1][0]) ** 2"}, of="_slow_hit")
 mistakes(
@@ -531,18 +531,12 @@ mistakes(
     "STRICT_COMPARISON",
     "Your code rejects an engine that meets a limit exactly.",
     '"<=" and ">=" include equality.',
-).program(
-    "choose_engine",
-    '_OPERATORS = {"<=": operator.lt, ">=": operator.gt, "==": operator.eq}',
-)
+).program("choose_engine", '_OPERATORS = {"<=": operator.lt, ">=": operator.gt, "==": operator.eq}')
 mistakes(
     "OPERATOR_CONFUSED",
     "Your code reads an operator as another one.",
     '"<=" means that the report\'s value is at most the required one, ">=" at least, and "==" equal.',
-).program(
-    "choose_engine",
-    '_OPERATORS = {"<=": operator.ge, ">=": operator.le, "==": operator.eq}',
-)
+).program("choose_engine", '_OPERATORS = {"<=": operator.ge, ">=": operator.le, "==": operator.eq}')
 mistakes(
     "DEPENDS_ON_NAMES",
     "With the same reports under other names, your code picks another engine.",
@@ -604,7 +598,7 @@ mistakes(
 mistakes(
     "NOTHING_FITS",
     "An engine is returned where None belongs.",
-    "A value that is nearly equal does not meet ==. Return None if no engine meets every requirement, or if there are no reports.",
+    "A value that nearly meets a requirement does not meet it. Return None if no engine meets every requirement, or if there are no reports.",
     kind="consequence",
 ).around("choose_engine", 'return _right(reports, requirements) or ""')
 mistakes(
@@ -621,10 +615,7 @@ mistakes(
     "A licence is not written as its SPDX identifier, or as two joined by OR.",
     "Find its identifier in the SPDX list (spdx.org/licenses). If there is a choice of two, give either, or join them with OR.",
     kind="fact",
-).program(
-    "engine_facts",
-    '_FACTS["physx"]["licence"] = ("BSD", "https://github.com/NVIDIA-Omniverse/PhysX")',
-)
+).program("engine_facts", '_FACTS["physx"]["licence"] = ("BSD", "https://github.com/NVIDIA-Omniverse/PhysX")')
 mistakes(
     "DATE_BEFORE_FACT",
     "The date of a fact is earlier than the day on which it became true.",
@@ -636,10 +627,7 @@ mistakes(
     "A default step is given for an engine that has none: it takes whatever step the caller passes.",
     "Report None for an engine whose step function needs the step as an argument and has no default for it.",
     kind="fact",
-).program(
-    "engine_facts",
-    '_FACTS["ode"]["default_step_s"] = (0.001, "https://classic.gazebosim.org")',
-)
+).program("engine_facts", '_FACTS["ode"]["default_step_s"] = (0.001, "https://classic.gazebosim.org")')
 mistakes(
     "INTEGRATOR_BY_NAME",
     "No engine here uses explicit Euler by default.",
@@ -663,55 +651,37 @@ mistakes(
     "The number is not a default of this engine. Examples and programs that use an engine often set another step.",
     "Find the default itself: in the signature of the function that steps, or in the list of options.",
     kind="fact",
-).program(
-    "engine_facts",
-    '_FACTS["mujoco"]["default_step_s"] = (0.01, "https://mujoco.readthedocs.io")',
-)
+).program("engine_facts", '_FACTS["mujoco"]["default_step_s"] = (0.01, "https://mujoco.readthedocs.io")')
 mistakes(
     "LANGUAGE_OF_INTERFACE",
     "The engine can be called from the language that is given. It is written in another one.",
     "Which language are most of the files of the engine itself in, without its interface and its bindings?",
     kind="fact",
-).program(
-    "engine_facts",
-    '_FACTS["ode"]["language"] = ("C", "https://ode.org")',
-)
+).program("engine_facts", '_FACTS["ode"]["language"] = ("C", "https://ode.org")')
 mistakes(
     "GAZEBO_SIM_USES_DART",
     "Today's Gazebo is listed as a user of ODE.",
     "Gazebo Classic used ODE; Gazebo Sim uses DART by default. Say which of the two you mean.",
     kind="fact",
-).program(
-    "engine_facts",
-    '_FACTS["ode"]["used_by"] = (["Gazebo Sim"], "https://gazebosim.org")',
-)
+).program("engine_facts", '_FACTS["ode"]["used_by"] = (["Gazebo Sim"], "https://gazebosim.org")')
 mistakes(
     "SOURCE_NOT_A_URL",
     "A source has to be the web address of a page about the fact.",
     "Give the address of the page that you read, starting with https:// and without spaces.",
     kind="fact",
-).program(
-    "engine_facts",
-    '_FACTS["bullet"]["licence"] = ("Zlib", "its README")',
-)
+).program("engine_facts", '_FACTS["bullet"]["licence"] = ("Zlib", "its README")')
 mistakes(
     "NOT_A_DATE",
     "A date is not a day of this century in the form YYYY-MM-DD.",
     "Write the day on which you looked it up, such as 2026-03-14.",
     kind="fact",
-).program(
-    "engine_facts",
-    '_AS_OF = "11/21/2026"',
-)
+).program("engine_facts", '_AS_OF = "11/21/2026"')
 mistakes(
     "PAIR_MISSING",
     "At least one engine has no entry for one of the fields.",
     "There are four engines and five fields: twenty entries.",
     kind="fact",
-).program(
-    "engine_facts",
-    'del _FACTS["mujoco"]',
-)
+).program("engine_facts", 'del _FACTS["mujoco"]')
 mistakes(
     "PAIR_TWICE_AND_MISSING",
     "One entry is there more than once, and at least one other is not there.",
@@ -755,10 +725,7 @@ mistakes(
     "A valid identifier is given, but not of a licence of this engine.",
     "Open the licence file in the engine's repository: name and version count. Of two joined by OR, both must be right.",
     kind="fact",
-).program(
-    "engine_facts",
-    '_FACTS["ode"]["licence"] = ("GPL-3.0-only", "https://github.com/odedevs/ode")',
-)
+).program("engine_facts", '_FACTS["ode"]["licence"] = ("GPL-3.0-only", "https://github.com/odedevs/ode")')
 mistakes(
     "ORDER_WITHOUT_LOG",
     "The result is two to the power of the order.",
@@ -785,16 +752,8 @@ mistakes(
     },
     of="_order",
 )
-mistakes("NOT_A_NUMBER").body(
-    "characterise",
-    """
-        def end(n):
-            q, v = engine.run("free", [1.0], [0.0], 1.3 / omega / n, n, [0.0])
-            return np.array([q[-1][0], v[-1][0] / omega])
-
-        return float(np.log2(np.linalg.norm(end(16) - end(32)) / np.linalg.norm(end(32) - end(64))))
-    """,
-    of="_order",
+mistakes("NOT_A_NUMBER").edit(
+    "characterise", {"round(math.log2(np.linalg": "float(np.log2(-np.linalg"}, of="_order"
 )
 mistakes(
     "DAMPING_NOT_LOG",
@@ -1080,7 +1039,7 @@ mistakes(
 
 mistakes(
     "SYMPLECTIC_INVERTED",
-    "The answers are the opposite of the right ones.",
+    "Yes and no are exchanged.",
     "Symplectic means that the determinant is one: return abs(det - 1) < 1e-6.",
 )
 mistakes(
@@ -1156,7 +1115,7 @@ mistakes(
 )
 mistakes(
     "DAMPING_OVER_ONE_STEP",
-    "The rate is as many times too large as a run has steps.",
+    "What a whole run loses is divided by the time of a single step.",
     "Divide by the time that passed between the two speeds: n steps of h.",
 )
 mistakes(
@@ -1272,7 +1231,7 @@ mistakes(
 )
 mistakes(
     "PENETRATION_NOT_IN_METRES",
-    "The depth has the right digits, in another unit.",
+    "The depth is in another unit than metres.",
     "The report asks for metres.",
 )
 mistakes(
@@ -1523,6 +1482,11 @@ def hypotheses():
     for key, forms in _KEYS.items():
         for code, measure in forms:
             yield "characterise", (code,), _with(key, measure)
+        # Two at once: a value that another mistake gives, changed as well.
+        firsts = dict(reversed(forms)).items()
+        for (code, change), (other, measure) in itertools.product(_CHANGES.get(key, ()), firsts):
+            if code != other and _ALONE.isdisjoint((code, other)):
+                yield "characterise", (other, code), _with(key, _changed(measure, change))
     for code, forms in choosing.METS.items():
         for met in forms:
             yield "choose_engine", (code,), _choosing(choosing.choose, met)
@@ -1564,7 +1528,49 @@ _RIGHT = {
 
 def _of(key, change):
     """The right value, changed: ``change(value, info)``."""
-    return lambda engine, info: change(_RIGHT[key](engine, info), info)
+    return _changed(_RIGHT[key], change)
+
+
+def _changed(measure, change):
+    return lambda engine, info: change(measure(engine, info), info)
+
+
+#: Mistakes that change a value when it is measured.
+_CHANGES = {
+    "symplectic": (("SYMPLECTIC_INVERTED", lambda value, _: not value),),
+    "linear_damping": (
+        ("DAMPING_SIGN", lambda c, _: -c),
+        ("DAMPING_OTHER_LOG", lambda c, _: c / math.log(10)),
+        ("DAMPING_OTHER_LOG", lambda c, _: c / math.log(2)),
+        ("DAMPING_AS_FORCE", lambda c, info: c * info["mass"]),
+        ("DAMPING_PER_STEP", lambda c, info: c * info["dt"] / 1000),
+        ("DAMPING_PER_STEP", lambda c, info: c * info["dt"]),
+        ("DAMPING_OVER_ONE_STEP", lambda c, _: c * 100),
+        ("DAMPING_OF_ENERGY", lambda c, _: 2 * c),
+    ),
+    "max_stable_step": (("RETURNS_Z", lambda h, info: h * info["omega"]),),
+    "rest_penetration": (
+        ("PENETRATION_NOT_IN_METRES", lambda depth, _: 1000 * depth),
+        ("PENETRATION_NOT_IN_METRES", lambda depth, _: 100 * depth),
+    ),
+    "restitution": (
+        ("RESTITUTION_SIGN", lambda e, _: -e),
+        ("RESTITUTION_SQUARED", lambda e, _: e * e),
+        ("RESTITUTION_INVERTED", lambda e, _: 1 / e if e else math.inf),
+        ("RESTITUTION_LOSS", lambda e, _: 1 - e),
+    ),
+}
+
+
+#: Words that are not true beside those of a second mistake.
+_ALONE = {"DAMPING_OF_ENERGY", "DAMPING_OF_ENVELOPE", "DAMPING_TIME_CONSTANT", "DAMPING_ASSUMED"}
+_ALONE |= {"LIMIT_ASSUMED", "LIMIT_COARSE", "RESTITUTION_INVERTED", "RESTITUTION_LOSS", "RESTITUTION_ASSUMED"}
+_ALONE |= {"PENETRATION_HEIGHT", "VALUE_ROUNDED"}
+
+
+def _changes(key):
+    """Each of these alone."""
+    return ((code, _of(key, change)) for code, change in _CHANGES[key])
 
 
 def _order(ns=(16, 32, 64), start=(1.0, 0.7), span=1.3, log=math.log2, whole=round, gaps=None, turn=False):
@@ -1655,8 +1661,7 @@ _ORDER = (
     ("ORDER_IN_ROUNDING", _order((4000, 8000, 16000))),
     ("ORDER_IN_ROUNDING", _order((2000, 4000, 8000))),
     ("ORDER_STEPS_TOO_LARGE", _order((2, 4, 8), span=5.3)),
-    ("ORDER_STEPS_TOO_LARGE", _order((1, 2, 4), span=5.3)),
-    ("ORDER_STEPS_TOO_LARGE", _order((1, 2, 4), span=2.0)),
+    *(("ORDER_STEPS_TOO_LARGE", _order((1, 2, 4), span=span)) for span in (5.3, 2.0, 1.3, 1.0)),
     ("ORDER_ASSUMED", lambda engine, info: 1),
     ("ORDER_ASSUMED", lambda engine, info: 2),
 )
@@ -1686,7 +1691,7 @@ def _energy(steps, z, least, sided=False):
 
 
 _SYMPLECTIC = (
-    ("SYMPLECTIC_INVERTED", _of("symplectic", lambda value, _: not value)),
+    *_changes("symplectic"),
     ("STABLE_TAKEN_FOR_SYMPLECTIC", _area(looks=lambda det, least: det - 1 < least)),
     ("STABLE_TAKEN_FOR_SYMPLECTIC", _area(looks=lambda det, least: abs(det) <= 1 + least)),
     ("SYMPLECTIC_TOLERANCE", _area(least=1e-2)),
@@ -1706,10 +1711,6 @@ _SYMPLECTIC = (
 )
 
 
-def _damping(change):
-    return _of("linear_damping", change)
-
-
 def _at_dt(divisor, rate):
     def measure(engine, info):
         h = info["dt"] / divisor
@@ -1726,19 +1727,13 @@ def _envelope(engine, info):
 
 
 _DAMPING = (
-    ("DAMPING_ASSUMED", _damping(lambda c, _: 0.0)),
-    ("DAMPING_SIGN", _damping(lambda c, _: -c)),
-    ("DAMPING_OF_ENERGY", _damping(lambda c, _: 2 * c)),
-    ("DAMPING_OF_ENVELOPE", _damping(lambda c, _: c / 2)),
+    ("DAMPING_ASSUMED", lambda engine, info: 0.0),
+    *_changes("linear_damping"),
+    ("DAMPING_OF_ENVELOPE", _of("linear_damping", lambda c, _: c / 2)),
     ("DAMPING_OF_ENVELOPE", _envelope),
-    ("DAMPING_OTHER_LOG", _damping(lambda c, _: c / math.log(10))),
-    ("DAMPING_OTHER_LOG", _damping(lambda c, _: c / math.log(2))),
-    ("DAMPING_TIME_CONSTANT", _damping(lambda c, _: 1 / c if c > 1e-9 else 0.0)),
-    ("DAMPING_TIME_CONSTANT", _damping(lambda c, _: 1 / c if c > 1e-9 else math.inf)),
-    ("DAMPING_TIME_CONSTANT", _damping(lambda c, _: math.log(2) / c if c > 1e-9 else math.inf)),
-    ("DAMPING_AS_FORCE", _damping(lambda c, info: c * info["mass"])),
-    ("DAMPING_PER_STEP", _damping(lambda c, info: c * info["dt"])),
-    ("DAMPING_PER_STEP", _damping(lambda c, info: c * info["dt"] / 1000)),
+    ("DAMPING_TIME_CONSTANT", _of("linear_damping", lambda c, _: 1 / c if c > 1e-9 else 0.0)),
+    ("DAMPING_TIME_CONSTANT", _of("linear_damping", lambda c, _: 1 / c if c > 1e-9 else math.inf)),
+    ("DAMPING_TIME_CONSTANT", _of("linear_damping", lambda c, _: math.log(2) / c if c > 1e-9 else math.inf)),
     ("DAMPING_AT_DT", _at_dt(1, lambda v, h: -math.log(v[-1][0]) / (100 * h))),
     ("DAMPING_AT_DT", _at_dt(1, lambda v, h: (1 - v[1][0]) / h)),
     ("DAMPING_AT_DT", _at_dt(2, lambda v, h: -math.log(v[-1][0]) / (100 * h))),
@@ -1813,18 +1808,25 @@ def _by_eye(steps, most):
     return measure
 
 
+#: What is taken for the largest modulus. The walk decides which of its limits is found.
+_SIZES = (
+    ("STABLE_BY_DETERMINANT", lambda m: abs(np.linalg.det(m))),
+    ("STABLE_BY_TRACE", lambda m: abs(np.trace(m)) / 2),
+    ("EIGENVALUES_WITHOUT_MODULUS", lambda m: np.linalg.eigvals(m).real.max()),
+    ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).real).max()),
+    ("SMALLEST_EIGENVALUE", lambda m: min(abs(np.linalg.eigvals(m)))),
+    ("STABLE_BY_NORM", lambda m: np.linalg.norm(m, 2)),
+    ("STABLE_BY_NORM", np.linalg.norm),
+    ("STABLE_BY_NORM", lambda m: abs(np.linalg.eigvalsh(m)).max()),
+)
+_WALKS = (0.5, 0.2, 0.05)
+
+
 _STABLE = (
     ("LIMIT_ASSUMED", lambda engine, info: 2 / info["omega"]),
     ("LIMIT_ASSUMED", lambda engine, info: math.sqrt(2) / info["omega"]),
-    ("RETURNS_Z", _of("max_stable_step", lambda h, info: h * info["omega"])),
-    ("STABLE_BY_DETERMINANT", _search(lambda m: abs(np.linalg.det(m)))),
-    *(("STABLE_BY_TRACE", _search(lambda m: abs(np.trace(m)) / 2, walk=walk)) for walk in (0.5, 0.25, 0.05)),
-    ("EIGENVALUES_WITHOUT_MODULUS", _search(lambda m: np.linalg.eigvals(m).real.max())),
-    ("EIGENVALUES_WITHOUT_MODULUS", _search(lambda m: abs(np.linalg.eigvals(m).real).max())),
-    ("SMALLEST_EIGENVALUE", _search(lambda m: min(abs(np.linalg.eigvals(m))))),
-    ("STABLE_BY_NORM", _search(lambda m: np.linalg.norm(m, 2))),
-    ("STABLE_BY_NORM", _search(lambda m: np.linalg.norm(m))),
-    ("STABLE_BY_NORM", _search(lambda m: abs(np.linalg.eigvalsh(m)).max())),
+    *_changes("max_stable_step"),
+    *((code, _search(size, walk=walk)) for code, size in _SIZES for walk in _WALKS),
     ("TOLERANCE_TOO_TIGHT", _search(limit=1 - 1e-12)),
     ("TOLERANCE_TOO_LOOSE", _search(limit=1.01)),
     ("TOLERANCE_TOO_LOOSE", _search(limit=1.001)),
@@ -1833,7 +1835,7 @@ _STABLE = (
     ("LIMIT_FROM_ABOVE", _jumped(10.0)),
     ("LIMIT_FROM_ABOVE", _from_above),
     ("LIMIT_FROM_ABOVE", _search(walk=4.0)),
-    *(("LIMIT_NOT_SCALED", _search(scaled=False, walk=walk)) for walk in (0.5, 0.2)),
+    *(("LIMIT_NOT_SCALED", _search(scaled=False, walk=walk)) for walk in _WALKS),
     ("LIMIT_COARSE", _search(fine=False)),
     ("LIMIT_COARSE", _search(walk=0.25, fine=False)),
     ("NO_INFINITY", _search(endless=None)),
@@ -1877,7 +1879,7 @@ _FRICTION = (
     ("ANISOTROPY_ASSUMED", lambda engine, info: 1.0),
     ("ANISOTROPY_ASSUMED", lambda engine, info: math.sqrt(2)),
     ("DIAGONAL_NOT_PUSHED", _ratio(diagonal=(0.0, 1.0))),
-    ("ANISOTROPY_INVERTED", _ratio(made=lambda d, s, _: s / d)),
+    ("ANISOTROPY_INVERTED", _of("friction_anisotropy", lambda ratio, _: 1 / ratio)),
     ("DIAGONAL_COMPONENT", _ratio(diagonal=(1.0, 1.0))),
     ("DIAGONAL_SUM", _of("friction_anisotropy", lambda ratio, _: ratio * math.sqrt(2))),
     ("ANISOTROPY_IS_DIFFERENCE", _ratio(made=lambda d, s, _: d / s - 1)),
@@ -1923,8 +1925,7 @@ _PENETRATION = (
     ("PENETRATION_TOO_EARLY", _depth(_sunk, seconds=0.05)),
     ("PENETRATION_TOO_EARLY", _depth(_sunk, seconds=0.02)),
     ("PENETRATION_TOO_EARLY", _depth(_sunk, seconds=0.1)),
-    ("PENETRATION_NOT_IN_METRES", _depth(lambda r, z, _: 1000 * max(0.0, r - z[-1]))),
-    ("PENETRATION_NOT_IN_METRES", _depth(lambda r, z, _: 100 * max(0.0, r - z[-1]))),
+    *_changes("rest_penetration"),
     ("PENETRATION_RELATIVE", _depth(lambda r, z, _: max(0.0, r - z[-1]) / r)),
     ("PENETRATION_RELATIVE", _depth(lambda r, z, _: max(0.0, r - z[-1]) / (2 * r))),
     ("OTHER_STEP_THAN_DT", _depth(_sunk, steps=2)),
@@ -1956,18 +1957,11 @@ def _launched(distance, before=2.0):
     return measure
 
 
-def _restitution(change):
-    return _of("restitution", change)
-
-
 _RESTITUTION = (
-    ("RESTITUTION_SIGN", _restitution(lambda e, _: -e)),
-    ("RESTITUTION_SQUARED", _restitution(lambda e, _: e * e)),
-    ("RESTITUTION_SQUARED", _restitution(lambda e, _: math.sqrt(max(e, 0.0)))),
-    ("RESTITUTION_LOSS", _restitution(lambda e, _: 1 - e)),
-    ("RESTITUTION_LOSS", _restitution(lambda e, _: 1 - e * e)),
-    ("RESTITUTION_INVERTED", _restitution(lambda e, _: 1 / e if e else math.inf)),
-    ("RESTITUTION_SPEED_AFTER", _restitution(lambda e, _: 2 * e)),
+    *_changes("restitution"),
+    ("RESTITUTION_SQUARED", _of("restitution", lambda e, _: math.sqrt(max(e, 0.0)))),
+    ("RESTITUTION_LOSS", _of("restitution", lambda e, _: 1 - e * e)),
+    ("RESTITUTION_SPEED_AFTER", _of("restitution", lambda e, _: 2 * e)),
     ("RESTITUTION_ASSUMED", lambda engine, info: 0.0),
     ("RESTITUTION_ASSUMED", lambda engine, info: 1.0),
     ("RESTITUTION_ASSUMED", lambda engine, info: 0.5),

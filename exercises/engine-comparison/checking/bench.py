@@ -211,6 +211,14 @@ def repeated(case: Case) -> int:
     return max((2 if _shows(run) else 1 for run, again in pairs if run == again), default=0)
 
 
+def ends_apart(case: Case) -> bool:
+    """Whether of the runs of a spring with several steps no two from one start took the same time. They are
+    few: a search for the largest stable step makes more."""
+    runs = {(q0, v0, h, n) for scene, q0, v0, h, n, _ in case.runs if scene == "spring" and n > 3}
+    times = {(q0, v0, float(f"{h * n:.6g}")) for q0, v0, h, n in runs}
+    return 1 < len(runs) < 9 and len(times) == len(runs)
+
+
 def _shows(run: tuple[Any, ...]) -> bool:
     scene, q0, v0, _, n, force = run
     return n > 0 and (scene == "floor" or any(q0) or any(v0) or any(force))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import copy
 import itertools
-import math
-import operator
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from course.scoring import kit
 
@@ -179,9 +179,8 @@ def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers:
             return named(code)
     if all(answer is None for answer in answers) and _never_chooses(submission):
         return named("NEVER_CHOOSES")
-    for code, looks in (("IGNORES_MISSING", _not_measured), ("EQUALITY_ROUGH", _nearly_met)):
-        if all(looks(reports, needs, answer) for (reports, needs, _), answer in wrong):
-            return named(code)
+    if code := _of_one_requirement(submission):
+        return named(code)
     return named("NOTHING_FITS") if all(expected is None for (_, _, expected), _ in wrong) else None
 
 
@@ -207,27 +206,32 @@ def _follows_what_was_asked(submission: Any, reports: Any, needs: Any) -> bool:
     return len(set(found[:3])) == len(set(found[3:])) == 1 and found[0] != found[3]
 
 
-def _not_measured(reports: Any, needs: Any, answer: Any) -> bool:
-    """Whether the engine that was chosen lacks a required value."""
-    chosen = reports.get(answer) if isinstance(answer, str) else None
-    return chosen is not None and any(chosen.get(need["key"]) is None for need in needs)
+def _of_one_requirement(submission: Any) -> str:
+    """What a single engine shows that is chosen, or is not, by a single requirement; "" if nothing."""
+    known = [{"cost": 1.0, **has} for has in ({}, {"limit": None}, *({"limit": at} for at in _AT.tolist()))]
+    told = [({"kifo": one}, [{"key": "limit", "op": op, "value": 5.0}]) for op in _OPERATORS for one in known]
+    found = kit.attempt(lambda: [answer == "kifo" for answer in submission.call_each(TASK, told)])
+    if found is None:
+        return ""
+    chosen = np.array(found).reshape(len(_OPERATORS), -1)  # by operator, and by what the engine has
+    missing, known = chosen[:, :2], chosen[:, 2:]
+    wrong = known & ~np.array([op(_AT, 5.0) for op in _OPERATORS.values()])
+    far = np.any(wrong[:, [0, -1]], axis=1)
+    close = np.any(wrong[:, 1:-1], axis=1)
+    seen = {
+        "IGNORES_MISSING": np.any(missing),
+        "OPERATOR_IGNORED": np.any(np.all(known, axis=1)),
+        "OPERATOR_NEVER_MET": np.any(~np.any(known, axis=1)),
+        "STRICT_COMPARISON": not np.all(known[:, len(_AT) // 2]),
+        "EQUALITY_ROUGH": np.any(close & ~far),
+    }
+    return next((code for code, there in seen.items() if there), "")
 
 
-def _nearly_met(reports: Any, needs: Any, answer: Any) -> bool:
-    """Whether the engine that was chosen misses requirements, each by less than 2 %."""
-    missed = [(reports[answer].get(need["key"]), need) for need in needs] if answer in reports else []
-    missed = [(value, need) for value, need in missed if not _met(value, need)]
-    return bool(missed) and all(
-        _is_number(value) and _is_number(need["value"]) and math.isclose(value, need["value"], rel_tol=0.02)
-        for value, need in missed
-    )
-
-
-def _met(value: Any, need: Any) -> bool:
-    return value is not None and bool(_OPERATORS[need["op"]](value, need["value"]))
-
-
-_OPERATORS = {"<=": operator.le, ">=": operator.ge, "==": operator.eq}
+#: What an engine has, where 5 is the limit: far below, hardly below, equal, hardly above, far above.
+_HARDLY = 5 * np.array([1e-2, 1e-7, 1e-11, 1e-15])
+_AT = np.array([1.0, *(5 - _HARDLY), 5.0, *(5 + _HARDLY[::-1]), 9.0])
+_OPERATORS = {"<=": np.less_equal, ">=": np.greater_equal, "==": np.equal}
 
 
 def _never_chooses(submission: Any) -> bool:

@@ -80,18 +80,6 @@ def _kept(key: str, cases: list[Any]) -> bool:
 # -- order ------------------------------------------------------------------------------------------------
 
 
-def _ends_apart(_: str, cases: list[Any]) -> bool:
-    """Of the runs of a spring with several steps, no two from one start took the same time. They are few: a
-    search for the largest stable step makes more."""
-
-    def apart(case: Any) -> bool:
-        runs = {(q0, v0, h, n) for _, (_, q0, v0, h, n, _) in probing.runs([case], "spring") if n > 3}
-        times = {(q0, v0, float(f"{h * n:.6g}")) for q0, v0, h, n in runs}
-        return 1 < len(runs) < 9 and len(times) == len(runs)
-
-    return all(map(apart, cases))
-
-
 def _negative(key: str, cases: list[Any]) -> bool:
     """Wrong values are negative, or zero in part, and no right one is."""
     wrong = [case.measured(key) for case in cases if not probing.right(key, case)]
@@ -342,7 +330,7 @@ def _repeated(how: int) -> Probe:
 
 _PROBES: dict[str, list[tuple[str, Probe]]] = {
     "order": [
-        ("ORDER_TIME_NOT_FIXED", _ends_apart),
+        ("ORDER_TIME_NOT_FIXED", lambda _, cases: all(map(bench.ends_apart, cases))),
         ("ORDER_ASSUMED", _one_for_all),
         ("ORDER_AGAINST_UNDAMPED", probing.where(probing.damped, lambda value, t: -1 <= value < t)),
         (

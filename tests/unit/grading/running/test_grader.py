@@ -1,6 +1,7 @@
 """One grader and many exercises: few sessions are open at a time, and verdicts are the same."""
 
 import shutil
+from unittest.mock import Mock
 
 import pytest
 
@@ -21,9 +22,8 @@ ORDER = ("doubling", "halving", "doubling", "doubling", "halving")
 def test_a_grader_closes_its_oldest_session_for_another(catalog, monkeypatch, most, opened):
     monkeypatch.setenv("COURSE_CONTENT", str(catalog.content.root))
     monkeypatch.setattr(grader, "_MOST_OPEN", most)
-    collected = []
-    real = session.CollectedChecks
-    monkeypatch.setattr(session, "CollectedChecks", lambda *a, **k: collected.append(a) or real(*a, **k))
+    collected = Mock(wraps=session.CollectedChecks)
+    monkeypatch.setattr(session, "CollectedChecks", collected)
     one = grader._Grader(Config(Terms(), 0))
     try:
         with kept_sandboxes():
@@ -34,7 +34,7 @@ def test_a_grader_closes_its_oldest_session_for_another(catalog, monkeypatch, mo
                 assert len(one._sessions) <= most
     finally:
         one.close()
-    assert len(collected) == opened
+    assert collected.call_count == opened
 
 
 # -- a fault in the files of one exercise --------------------------------------------------------------------

@@ -32,7 +32,7 @@ from tests.unit.grading.made import (
     read_by_php,
     read_csv,
 )
-from tests.unit.grading.test_results import POLICY
+from tests.unit.grading.test_results import DAY, DUE, POLICY
 
 JUNIT = Path(__file__).resolve().parents[3] / "fixtures" / "junit.xsd"
 OPTIONS = ExportOptions(("doubling",), {"doubling": "4711"}, zeros=True)
@@ -41,17 +41,21 @@ SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]
 FOR_STUDENTS = ["junit", "gradescope"]
 
 
+def everybody(folder, names=HOSTILE, **more):
+    """The gradebook of a class with every name, every state, an override and somebody late; it is open."""
+    verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(names)}
+    book = make_book(folder, verdicts | {"late": RIGHT, "set": HALF, "broken": BROKEN} | more)
+    book.add_override(Override("set", "doubling", 8.25, 'said "=1+1", <b>then</b> left\nearly'))
+    at = DUE.timestamp() + 2 * DAY
+    book.add_times([SubmittedAt("late", "doubling", digest("late"), "gradescope", at)])
+    book.set_meta(late_policy=POLICY)
+    return book
+
+
 @pytest.fixture(scope="module")
 def class_of_everybody(tmp_path_factory):
-    """Results of a class with every hostile name, every state, an override and somebody late."""
     out = tmp_path_factory.mktemp("exports")
-    verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(HOSTILE)}
-    verdicts |= {"late": RIGHT, "set": HALF, "broken": BROKEN}
-    with make_book(out, verdicts) as book:
-        book.add_override(Override("set", "doubling", 8.25, 'said "=1+1", <b>then</b> left\nearly'))
-        at = 1_796_169_540.0 + 2 * 86_400  # two days after the deadline of POLICY
-        book.add_times([SubmittedAt("late", "doubling", digest("late"), "gradescope", at)])
-        book.set_meta(late_policy=POLICY)
+    everybody(out).close()
     return out
 
 

@@ -159,48 +159,33 @@ def test_links_and_pipes_are_refused_and_never_followed_or_waited_for(tmp_path, 
     assert reason(linked, doubling) == "symlink"
 
 
-def _bomb(path):
-    archive(path, {"doubling/doubling.py": b"#" * (4 << 20)})
-
-
-def _many(path):
-    archive(path, {f"file{number}.txt": b"" for number in range(MAX_FILES + 1)})
-
-
 def _lying_size(path):
-    archive(path, {"doubling/doubling.py": b"#" * (MAX_FILE + 1)}, manifest=None)
-    raw = bytearray(path.read_bytes())
-    size = (MAX_FILE + 1).to_bytes(4, "little")
-    while (at := raw.find(size)) >= 0:
-        raw[at : at + 4] = (100).to_bytes(4, "little")
-    path.write_bytes(raw)
+    archive(path, {FOUND: b"#" * (MAX_FILE + 1)}, manifest=None)
+    size, lie = (number.to_bytes(4, "little") for number in (MAX_FILE + 1, 100))
+    path.write_bytes(path.read_bytes().replace(size, lie))
 
 
-@pytest.mark.parametrize(
-    "make",
-    [
-        _bomb,
-        _many,
-        _lying_size,
-        lambda path: archive(path, {"../doubling.py": SOURCE}),
-        lambda path: archive(path, {"/etc/doubling.py": SOURCE}),
-        lambda path: archive(path, {"..\\doubling.py": SOURCE}),
-        lambda path: archive(path, {"C:/doubling.py": SOURCE}),
-        lambda path: archive(path, {FOUND: SOURCE, "a/" * (MAX_DEEP + 1) + "x.md": b""}),
-        lambda path: archive(path, {FOUND: SOURCE, "a" * (MAX_PATH + 1): b""}),
-        lambda path: archive(path, {"doubling/doubling.py": b"/etc/passwd"}, mode=stat.S_IFLNK | 0o777),
-        lambda path: archive(path, {"inner.zip": b"PK"}, manifest=None),
-        lambda path: path.write_bytes(b"PK\x03\x04 and nothing that follows"),
-        lambda path: path.write_bytes(b""),
-        lambda path: path.mkdir(),
-    ],
-    ids=[
-        "bomb", "many files", "lying size", "parent path", "absolute path", "backslash", "drive", "deep path",
-        "long path", "link", "nested", "damaged", "empty", "a folder",
-    ],
-)  # fmt: skip
-def test_hostile_archives_are_refused(tmp_path, doubling, make):
-    make(tmp_path / "mine.zip")
+HOSTILE = {
+    "bomb": lambda path: archive(path, {FOUND: b"#" * (4 << 20)}),
+    "many files": lambda path: archive(path, {f"file{number}.txt": b"" for number in range(MAX_FILES + 1)}),
+    "lying size": _lying_size,
+    "parent path": lambda path: archive(path, {"../doubling.py": SOURCE}),
+    "absolute path": lambda path: archive(path, {"/etc/doubling.py": SOURCE}),
+    "backslash": lambda path: archive(path, {"..\\doubling.py": SOURCE}),
+    "drive": lambda path: archive(path, {"C:/doubling.py": SOURCE}),
+    "deep path": lambda path: archive(path, {FOUND: SOURCE, "a/" * (MAX_DEEP + 1) + "x.md": b""}),
+    "long path": lambda path: archive(path, {FOUND: SOURCE, "a" * (MAX_PATH + 1): b""}),
+    "link": lambda path: archive(path, {FOUND: b"/etc/passwd"}, mode=stat.S_IFLNK | 0o777),
+    "nested": lambda path: archive(path, {"inner.zip": b"PK"}, manifest=None),
+    "damaged": lambda path: path.write_bytes(b"PK\x03\x04 and nothing that follows"),
+    "empty": lambda path: path.write_bytes(b""),
+    "a folder": lambda path: path.mkdir(),
+}
+
+
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_hostile_archives_are_refused(tmp_path, doubling, kind):
+    HOSTILE[kind](tmp_path / "mine.zip")
     assert reason(tmp_path, doubling) == "refused_archive"
 
 

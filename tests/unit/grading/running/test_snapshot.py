@@ -1,6 +1,5 @@
 """Graders frozen per run: what judges is what was there when the run began, whatever is edited meanwhile."""
 
-import ast
 import json
 import os
 import shutil
@@ -12,6 +11,7 @@ from functools import partial
 from importlib.util import cache_from_source
 from pathlib import Path
 
+import grimp
 import pytest
 
 from course.catalog.load import Catalog
@@ -218,31 +218,11 @@ def test_checks_come_compiled_and_are_compiled_where_they_lie(course, monkeypatc
 def test_what_grades_imports_nothing_that_is_not_in_the_snapshot(course):
     """Not at the top and not in a function: a module that is missing would be found out by some student."""
     with frozen(Snapshot.take(course.content)) as graders_then:
-        missing = []
-        for path in (graders_then.folder / "course").rglob("*.py"):
-            for node in ast.walk(_without_types(ast.parse(path.read_bytes()))):
-                for name in _imported(node):
-                    target = graders_then.folder / name.replace(".", "/")
-                    if not (target.with_suffix(".py").is_file() or target.is_dir()):
-                        missing.append(f"{path.name}: {name}")
-        assert missing == []
-
-
-def _without_types(tree):
-    class Drop(ast.NodeTransformer):
-        def visit_If(self, node):
-            is_types = isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
-            return None if is_types else self.generic_visit(node)
-
-    return Drop().visit(tree)
-
-
-def _imported(node):
-    if isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
-        return [node.module] if node.module.split(".")[0] == "course" else []
-    if isinstance(node, ast.Import):
-        return [item.name for item in node.names if item.name.split(".")[0] == "course"]
-    return []
+        paths = [path.relative_to(graders_then.folder) for path in graders_then.folder.glob("course/**/*.py")]
+    there = {".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in paths}
+    graph = grimp.build_graph("course", exclude_type_checking_imports=True, cache_dir=None)
+    missing = {name: graph.find_modules_directly_imported_by(name) - there for name in there}
+    assert not {name: absent for name, absent in missing.items() if absent}
 
 
 def test_a_warm_up_alone_takes_its_words_along_and_knows_when_they_change(tmp_path, course):

@@ -13,7 +13,6 @@ from course.grading.results.effective import lift, override
 from course.grading.results.roster import Person, read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import graded_class, put, read_csv, roster_of
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
@@ -62,7 +61,7 @@ def made(folder, platform):
 
 def graded(folder, catalog, platform):
     _, roster = made(folder, platform)
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
+    options = RunOptions(exercises=("doubling",), seed=1, roster=read_roster(roster))
     return folder / "out", graded_class(folder, catalog, options, grade=right)
 
 
@@ -120,7 +119,7 @@ def test_two_spellings_of_an_accent_are_one_student(tmp_path, catalog):
     name = "zoé"
     put(tmp_path / "class" / unicodedata.normalize("NFD", name) / "doubling.py", b"double = abs\n")
     roster = roster_of(tmp_path, f"student\n{unicodedata.normalize('NFC', name)}\n")
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
+    options = RunOptions(exercises=("doubling",), seed=1, roster=roster)
     summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.strangers) == ([], [])
 
@@ -177,7 +176,7 @@ def test_a_plain_folder_that_two_rows_could_mean_is_nobody(tmp_path):
 def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path, catalog):
     submissions, roster = made(tmp_path, "folders")
     roster.write_text(CANVAS, "utf-8")
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
+    options = RunOptions(exercises=("doubling",), seed=1, roster=read_roster(roster))
     (submissions / "grace").rename(submissions / "hopper")
     summary = graded_class(tmp_path, catalog, options, grade=right)
     tried = (
@@ -245,7 +244,7 @@ def test_what_platforms_hand_out_is_read_unchanged(tmp_path):
 def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path, catalog):
     submissions, _ = made(tmp_path, "folders")
     (submissions / "eva").mkdir()
-    options = RunOptions(terms=Terms(), seed=1)
+    options = RunOptions(seed=1)
     summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.exit_code) == (["eva"], 0)
     found = rows(tmp_path / "out" / "grades.csv")
@@ -253,7 +252,7 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path, catalog):
         "ada": "graded", "eva": "missing", "grace": "graded",
     }  # fmt: skip
     (submissions / "eva" / "doubling.py").write_text("double = abs\n")
-    again = RunOptions(terms=Terms(), resume=True)
+    again = RunOptions(resume=True)
     summary = graded_class(tmp_path, catalog, again, grade=right)
     assert (summary.missing, rows(tmp_path / "out" / "grades.csv")["eva"]["state"]) == ([], "graded")
     with open_results(tmp_path / "out") as results:

@@ -48,6 +48,7 @@ from tests.unit.grading.made import (
     check,
     key,
     make_book,
+    put,
     read_csv,
     verdict,
 )
@@ -397,8 +398,7 @@ def test_nothing_is_replaced_that_no_export_to_this_page_made(tmp_path, target, 
         if there.startswith("an"):
             export(results, "html", tmp_path / "out", web / "a.html", ALL)
         else:
-            (web / there).parent.mkdir(parents=True)
-            (web / there).write_text("mine")
+            put(web / there, b"mine")
         before = {path: path.read_bytes() for path in web.rglob("*.*")}
         with pytest.raises(UsageError) as caught:
             export(results, name, tmp_path / "out", web / target, ALL)

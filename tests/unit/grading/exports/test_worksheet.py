@@ -13,7 +13,6 @@ from course.grading.results.effective import override
 from course.grading.results.roster import read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import graded_class, put, read_by_php
 from tests.unit.grading.running.test_run import right
 
@@ -72,7 +71,7 @@ def out(tmp_path_factory, catalog):
         place = folder / "class" / f"{name}_assignsubmission_file"
         put(place / module, b"def double(x):\n    return 2 * x\n")
     roster = read_roster(write(folder / "sheet.csv", SHEET))
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
+    options = RunOptions(exercises=("doubling",), seed=1, roster=roster)
     summary = graded_class(folder, catalog, options, grade=right)
     assert summary.missing == ["=Bob_102"]
     return folder / "out"

@@ -229,9 +229,7 @@ def test_a_manifest_that_cannot_be_trusted_is_refused(tmp_path, doubling, manife
 @pytest.mark.skipif(os.name == "nt", reason="file names are text there")
 def test_names_that_are_no_text_stay_apart(tmp_path, doubling):
     for raw in (b"\xff", b"\\xff"):
-        folder = tmp_path / os.fsdecode(raw)
-        folder.mkdir()
-        (folder / "doubling.py").write_bytes(SOURCE)
+        put(tmp_path / os.fsdecode(raw) / "doubling.py", SOURCE)
     names = [student.name for student in class_list(tmp_path).students]
     assert len(set(names)) == 2
     for name in names:

@@ -22,7 +22,6 @@ from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.handed_in.limits import MAX_FILE
 from course.printable import quoted
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import graded_class, notebook, put, read_class, roster_of, zipped
 from tests.unit.grading.running.test_run import right
 
@@ -426,7 +425,7 @@ def test_one_file_is_proposed_where_its_functions_are(catalog):
 
 
 def graded(tmp_path, catalog, **more):
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, **more)
+    options = RunOptions(exercises=("doubling",), seed=1, **more)
     return graded_class(tmp_path, catalog, options, grade=right)
 
 

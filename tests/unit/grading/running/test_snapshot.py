@@ -6,7 +6,6 @@ import shutil
 import signal
 import sys
 import time
-from contextlib import suppress
 from functools import partial
 from importlib.util import cache_from_source
 from pathlib import Path
@@ -26,6 +25,7 @@ from course.grading.running.snapshot import Snapshot, frozen, in_use
 from course.scoring.explain.story import forget_tables
 from course.scoring.graders import grader_files, grader_version
 from course.scoring.judging.submission import Terms
+from tests.journeys.processes import below
 from tests.unit.grading.running.test_run import make_class, right, scores
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -43,17 +43,6 @@ def edit(course):
     text = checks.read_text("utf-8")
     assert DUE in text
     checks.write_text(text.replace(DUE, EDITED), "utf-8")
-
-
-def graders():
-    found = []
-    for task in Path(f"/proc/{os.getpid()}/task").iterdir():
-        with suppress(FileNotFoundError, ProcessLookupError):  # threads and processes end while we look
-            children = (task / "children").read_text().split()
-            found += [
-                pid for pid in children if b"running.grader" in Path(f"/proc/{pid}/cmdline").read_bytes()
-            ]
-    return [int(pid) for pid in found]
 
 
 def options(level="L1", **more):
@@ -114,7 +103,7 @@ def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(tmp_path, course, s
     def report(*_):
         if not killed:
             edit(course)
-            killed.extend(graders())
+            killed.extend(pid for pid, (_, line) in below(os.getpid()).items() if "running.grader" in line)
             for pid in killed:
                 os.kill(pid, signal.SIGKILL)
 

@@ -161,17 +161,6 @@ def test_no_export_takes_the_place_of_what_the_run_wrote_in_another_format(resul
     assert (tmp_path / file).read_text() == "the run's own"
 
 
-def test_no_export_is_written_over_a_gradebook(results, tmp_path):
-    path = tmp_path / "gradebook.sqlite"
-    with make_book(tmp_path, {"ada": RIGHT}):
-        pass
-    before = path.read_bytes()
-    with pytest.raises(UsageError, match="most likely a gradebook") as caught:
-        export(results, "csv", tmp_path, path, OPTIONS)
-    assert caught.value.code == "is_a_database"
-    assert path.read_bytes() == before
-
-
 @pytest.fixture(scope="module")
 def violations():
     """A validating reader: what the schema has against a file."""

@@ -12,7 +12,7 @@ import zipfile
 import msgspec
 import pytest
 
-from course.errors import NotFoundError, UngradableError
+from course.errors import UngradableError
 from course.grading.intake import archives, students
 from course.grading.intake.archives import Reader, RefusedError
 from course.grading.intake.downloads import Place, Student, class_list
@@ -234,11 +234,6 @@ def test_names_that_are_no_text_stay_apart(tmp_path, doubling):
     assert len(set(names)) == 2
     for name in names:
         name.encode("utf-8")
-
-
-def test_no_such_class_is_said_plainly(tmp_path):
-    with pytest.raises(NotFoundError, match="not a folder of submissions"):
-        class_list(tmp_path / "nowhere")
 
 
 # -- hostile files: read elsewhere, under limits, and named --------------------------------------------------

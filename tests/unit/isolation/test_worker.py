@@ -16,24 +16,21 @@ from course.physics import systems
 
 @pytest.fixture(scope="module")
 def workers():
-    found = open_spawner(("numpy",))
-    yield found
-    found.close()
+    with contextlib.closing(open_spawner(("numpy",))) as found:
+        yield found
 
 
 @pytest.fixture
 def load(workers):
-    opened = []
+    with contextlib.ExitStack() as stack:
 
-    def load(source, **files):
-        raw = source.encode() if isinstance(source, str) else source
-        everything = {"main.py": raw, **{f"{name}.py": text.encode() for name, text in files.items()}}
-        opened.append(Connection(workers, everything, "main.py", Deadline(20)))
-        return opened[-1]
+        def load(source, **files):
+            raw = source.encode() if isinstance(source, str) else source
+            everything = {"main.py": raw, **{f"{name}.py": text.encode() for name, text in files.items()}}
+            connection = Connection(workers, everything, "main.py", Deadline(20))
+            return stack.enter_context(contextlib.closing(connection))
 
-    yield load
-    for connection in opened:
-        connection.close()
+        yield load
 
 
 def _failure(connection, *args):

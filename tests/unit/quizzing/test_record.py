@@ -57,14 +57,6 @@ def history(store):
 # -- the record of progress ------------------------------------------------------------------------------
 
 
-def test_the_newest_attempt_goes_on_until_it_is_finished(store, bank):
-    take(store, bank, 5, finish=False)
-    newest = take(store, bank, 6, finish=False)
-    left = history(store).open
-    assert left.id == newest.id
-    assert progress.records(history(store)) == []
-
-
 def test_the_first_answer_counts_and_nothing_after_the_end(store, bank):
     """Two terminals may go on with the same attempt."""
     one = take(store, bank, 5, finish=False)

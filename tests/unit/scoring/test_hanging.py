@@ -1,5 +1,6 @@
 """What a student sees at home alone: the line that hangs, soon, and what the file prints."""
 
+import contextlib
 import signal
 from pathlib import Path
 
@@ -122,15 +123,12 @@ def test_a_module_that_hangs_while_it_loads_is_named_by_its_line(home):
 @pytest.mark.parametrize("level", list(Level))
 def test_every_level_can_be_asked(level):
     require_level(level)
-    made = spawner(level, ("numpy",))
     source = b"def f():\n    while True:\n        pass\n"
-    try:
+    with contextlib.closing(spawner(level, ("numpy",))) as made:
         worker = Connection(made, {"a.py": source}, "a.py", Deadline(10), asks=True)
         worker.deadline = Deadline(0.2)
         with pytest.raises(StudentFailure) as failure:
             worker.call("f")
-    finally:
-        made.close()
     assert (failure.value.kind, failure.value.type, failure.value.line) == ("timeout", "loop", 2)
 
 

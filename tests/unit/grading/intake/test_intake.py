@@ -285,9 +285,8 @@ def test_an_escaped_line_end_in_a_string_moves_no_magic():
 @pytest.fixture
 def strict():
     """With little time and memory, so that a test need not use up what honest files may."""
-    found = Reader(cpu_s=1, wall_s=60, memory=512 << 20)
-    yield found
-    found.close()
+    with contextlib.closing(Reader(cpu_s=1, wall_s=60, memory=512 << 20)) as found:
+        yield found
 
 
 _BOMBS = {

@@ -158,6 +158,10 @@ ASKED = {
     ),
     "a notebook and its code": ({"doubling.py": SOURCE, "doubling.ipynb": NOTEBOOK}, "ambiguous_files",
         "doubling.py"),
+    "a notebook and its code, in one zip": (
+        {"all.zip": zipped({"doubling/doubling.py": SOURCE, "doubling/doubling.ipynb": NOTEBOOK})},
+        "ambiguous_files", "all.zip/doubling/doubling.py"
+    ),
     "a notebook and its code, of Windows": (
         {"a.py": SOURCE.replace(b"\n", b"\r\n"), "a.ipynb": NOTEBOOK}, "no_file", "a.py"
     ),

@@ -232,15 +232,6 @@ def test_the_words_of_an_error_hold_nothing_that_the_student_could_smuggle_out()
     assert "ZeroDivisionError" in known.message
 
 
-def test_where_no_input_is_hidden_the_message_repeats_the_exception_s_own():
-    failure = StudentFailure("error", type="NameError", message="name 'v1v2' is not defined", line=35)
-    finding = failures.finding_of(failure, shown=True)
-    assert (
-        finding.message == "Your code raised NameError on line 35 of your file: name 'v1v2' is not defined."
-    )
-    assert "README" not in finding.help, "a warm-up's has no example"
-
-
 @pytest.mark.parametrize(
     ("type_", "message", "said"),
     [

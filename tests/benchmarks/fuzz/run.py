@@ -130,7 +130,7 @@ def _notes_of(path: Path) -> None:
 
 
 def frames(chance: inputs.Chance, folder: Path) -> str:
-    liar = Liar(READY, LOADED, *inputs.frames(chance), script=lambda end: end.shutdown(socket.SHUT_WR))
+    liar = Liar(READY, LOADED, *inputs.frames(chance), lambda end: end.shutdown(socket.SHUT_WR))
     connection = Connection(liar, {"w.py": b"def f(x): ...\n"}, "w.py", Deadline(20.0))  # type: ignore[arg-type]
     lent = lambda *values, **named: len(values) + len(named)  # noqa: E731
     calls: tuple[Callable[[], Any], ...] = (

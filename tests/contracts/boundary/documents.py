@@ -25,17 +25,21 @@ def _bytes(change: Callable[[bytes], bytes]) -> Made:
     return make
 
 
-def _with(text: str) -> Made:
+def _raw(text: str | bytes) -> bytes:
+    return text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
+
+
+def _with(more: str | bytes) -> Made:
     """The right document with more at its end."""
-    return _bytes(lambda right: right + text.encode("utf-8", "surrogatepass"))
+    return _bytes(lambda right: right + _raw(more))
 
 
 def _instead(text: str | bytes) -> Made:
-    return _bytes(lambda _: text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass"))
+    return _bytes(lambda _: _raw(text))
 
 
 def _text(change: Callable[[str], str]) -> Made:
-    return _bytes(lambda right: change(right.decode()).encode("utf-8", "surrogatepass"))
+    return _bytes(lambda right: _raw(change(right.decode())))
 
 
 #: Of every text: how it is encoded, and where it ends.
@@ -48,13 +52,13 @@ TEXT: dict[str, Made] = {
     "utf-16": _bytes(lambda right: right.decode().encode("utf-16")),
     "utf-16-odd": _bytes(lambda right: right.decode().encode("utf-16")[:-1]),
     "utf-32": _bytes(lambda right: right.decode().encode("utf-32")),
-    "latin-1": _bytes(lambda right: right + b"\xe9\xff"),
-    "lone-surrogate": _bytes(lambda right: right + b"\xed\xa0\x80"),
+    "latin-1": _with(b"\xe9\xff"),
+    "lone-surrogate": _with(b"\xed\xa0\x80"),
     "truncated": _bytes(lambda right: right[: len(right) // 2]),
-    "controls": _bytes(lambda right: right + b"\x1b[2J\x07\x7f\r\x0b"),
+    "controls": _with(b"\x1b[2J\x07\x7f\r\x0b"),
     "noise": _instead(bytes(range(256)) * 40),
-    "long-line": _bytes(lambda right: right + b"x" * _LONG),
-    "many-lines": _bytes(lambda right: right + b"\n" * _LONG),
+    "long-line": _with(b"x" * _LONG),
+    "many-lines": _with(b"\n" * _LONG),
     "larger-than-any": _instead(b"x" * 25_000_000),
 }
 
@@ -371,46 +375,25 @@ SYNTAXES: dict[str, dict[str, Made]] = {
 }  # fmt: skip
 
 
-def _gone(path: Path) -> None:
-    path.unlink() if path.is_file() or path.is_symlink() else None
+def _instead_of_it(make: Callable[[Path], object]) -> Made:
+    """Not the right document, but what is made in its place."""
 
+    def made(path: Path) -> None:
+        path.unlink(missing_ok=True)
+        make(path)
 
-def _folder(path: Path) -> None:
-    _gone(path)
-    path.mkdir()
-
-
-def _pipe(path: Path) -> None:
-    _gone(path)
-    os.mkfifo(path)
-
-
-def _link(target: str) -> Made:
-    def make(path: Path) -> None:
-        _gone(path)
-        path.symlink_to(target or path.name)
-
-    return make
-
-
-def _socket(path: Path) -> None:
-    _gone(path)
-    os.mknod(path, stat.S_IFSOCK | 0o600)
-
-
-def _unreadable(path: Path) -> None:
-    path.chmod(0)
+    return made
 
 
 #: What may stand where a file is expected.
 SPECIAL: dict[str, Made] = {
-    "missing": _gone,
-    "folder": _folder,
-    "pipe": _pipe,
-    "endless-device": _link("/dev/zero"),
-    "empty-device": _link("/dev/null"),
-    "link-to-itself": _link(""),
-    "link-to-nothing": _link("nowhere"),
-    "socket": _socket,
-    "unreadable": _unreadable,
+    "missing": _instead_of_it(lambda _: None),
+    "folder": _instead_of_it(Path.mkdir),
+    "pipe": _instead_of_it(os.mkfifo),
+    "endless-device": _instead_of_it(lambda path: path.symlink_to("/dev/zero")),
+    "empty-device": _instead_of_it(lambda path: path.symlink_to("/dev/null")),
+    "link-to-itself": _instead_of_it(lambda path: path.symlink_to(path.name)),
+    "link-to-nothing": _instead_of_it(lambda path: path.symlink_to("nowhere")),
+    "socket": _instead_of_it(lambda path: os.mknod(path, stat.S_IFSOCK | 0o600)),
+    "unreadable": lambda path: path.chmod(0),
 }

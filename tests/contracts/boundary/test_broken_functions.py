@@ -10,6 +10,7 @@ student's own error, and in a verdict that can be written down.
 """
 
 import ast
+from contextlib import ExitStack
 from functools import cache
 
 import msgspec
@@ -97,16 +98,14 @@ def broken(source, names, way):
 
 @pytest.fixture(scope="module")
 def session_of():
-    opened = []
+    with ExitStack() as stack:
 
-    @cache
-    def session(exercise, timeout):
-        opened.append(GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=timeout)))
-        return opened[-1]
+        @cache
+        def session(exercise, timeout):
+            terms = Terms(timeout=timeout)
+            return stack.enter_context(GradingSession(exercise, CATALOG, scope="full", terms=terms))
 
-    yield session
-    for one in opened:
-        one.close()
+        yield session
 
 
 def graded(session, source):

@@ -19,6 +19,7 @@ import pytest
 from course.grading.gradebook.file import SEAL, TABLES, open_file, release, row_into, seal
 from tests.command_line import in_process
 from tests.contracts.boundary.documents import ENDLESS, SPECIAL, SYNTAXES, Made, as_view, sql
+from tests.unit.grading.made import put
 
 ROOT = Path(__file__).resolve().parents[3]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
@@ -28,8 +29,18 @@ MOST_KB = 200 << 10
 #: Exit codes with which a command may end over a document: it was taken (0, 1, 6), or it says what is wrong.
 TAKEN, REFUSED = {0, 1, 6}, {2, 3, 4, 5, 7}
 
-_SCENE = (ROOT / "course" / "sandbox" / "scenes" / "box-stack.toml").read_text("utf-8")
-_POLICY = """\
+_SOURCE = "def double(x):\n    return 2 * x\n\n\ndef doublings(x, n):\n    return [x] * n\n"
+_NOTEBOOK = json.dumps(
+    {
+        "nbformat": 4, "nbformat_minor": 5, "metadata": {"kernelspec": {"language": "python"}},
+        "cells": [{"cell_type": "code", "id": "a", "metadata": {}, "outputs": [], "execution_count": None,
+                   "source": _SOURCE}],
+    }
+)  # fmt: skip
+#: The right documents, but for those that a command makes.
+RIGHT = {
+    "my.toml": (ROOT / "course" / "sandbox" / "scenes" / "box-stack.toml").read_text("utf-8"),
+    "late.toml": """\
 format_version = 1
 percent_per_day = 10
 trust = ["list"]
@@ -42,38 +53,44 @@ due = 2026-12-01T23:59:00+01:00
 student = "ada"
 exercise = "*"
 days = 2
-"""
-_ROSTER = "student,name,email,extension_days\nada,Ada Lovelace,ada@uni.example,2\nbob,Bob,bob@uni.example,1\n"
-_TIMES = "student,exercise,submitted_at\nada,doubling,2026-12-02T12:00:00Z\n"
-_WORKSHEET = (
-    "Identifier,Full name,Email address,Status,Grade,Maximum Grade,Last modified (submission),"
-    "Last modified (grade),Feedback comments\n"
-    "Participant 1,ada,ada@uni.example,Submitted,,100.00,-,-,\n"
-    "Participant 2,bob,bob@uni.example,Submitted,,100.00,-,-,\n"
-)
-_CANVAS = (
-    "Student,ID,SIS User ID,SIS Login ID,Section,doubling (4711)\n"
-    "    Points Possible,,,,,10\nada,1,,ada,A,\nbob,2,,bob,A,\n"
-)
-_METADATA = """\
+""",
+    "class.csv": """\
+student,name,email,extension_days
+ada,Ada Lovelace,ada@uni.example,2
+bob,Bob,bob@uni.example,1
+""",
+    "times.csv": "student,exercise,submitted_at\nada,doubling,2026-12-02T12:00:00Z\n",
+    "sheet.csv": """\
+Identifier,Full name,Email address,Status,Grade,Maximum Grade,Last modified (submission),\
+Last modified (grade),Feedback comments
+Participant 1,ada,ada@uni.example,Submitted,,100.00,-,-,
+Participant 2,bob,bob@uni.example,Submitted,,100.00,-,-,
+""",
+    "canvas.csv": """\
+Student,ID,SIS User ID,SIS Login ID,Section,doubling (4711)
+    Points Possible,,,,,10
+ada,1,,ada,A,
+bob,2,,bob,A,
+""",
+    "my.ipynb": _NOTEBOOK,
+    "scheduler.json": '{"type": "Scheduler", "address": "tcp://127.0.0.1:9"}',
+    "a.toml": 'format_version = 1\nseed = 42\n[answers]\nnumerical-integration = "b"\n',
+    "a.json": '{"seed": 42, "answers": {"numerical-integration": "b"}}',
+    "content/quiz/numerical-integration.toml": (ROOT / "quiz" / "numerical-integration.toml").read_text(
+        "utf-8"
+    ),
+    "class/ada/doubling.py": _SOURCE,
+    "class/bob/doubling.py": _SOURCE,
+    "class2/ada/doubling.ipynb": _NOTEBOOK,
+    "gradescope/submission_900/doubling.py": _SOURCE,
+    "gradescope/submission_metadata.yml": """\
 submission_900:
   :submitters:
   - :name: Ada Lovelace
     :sid: '1'
     :email: ada@uni.example
   :created_at: 2026-11-01 10:00:00 Z
-"""
-_SOURCE = "def double(x):\n    return 2 * x\n\n\ndef doublings(x, n):\n    return [x] * n\n"
-_NOTEBOOK = json.dumps(
-    {
-        "nbformat": 4, "nbformat_minor": 5, "metadata": {"kernelspec": {"language": "python"}},
-        "cells": [{"cell_type": "code", "id": "a", "metadata": {}, "outputs": [], "execution_count": None,
-                   "source": _SOURCE}],
-    }
-)  # fmt: skip
-_ANSWERS = {
-    "toml": 'format_version = 1\nseed = 42\n[answers]\nnumerical-integration = "b"\n',
-    "json": '{"seed": 42, "answers": {"numerical-integration": "b"}}',
+""",
 }
 
 
@@ -85,14 +102,12 @@ class Door:
         file: where it lies, below the folder of the tests.
         syntax: the documents, by their syntax; the right one lies there already.
         words: the command line.
-        mini: whether the course is the miniature one.
         other: documents for this file alone.
     """
 
     file: str
     syntax: str
     words: tuple[str, ...]
-    mini: bool = True
     other: tuple[tuple[str, Made], ...] = ()
 
     @property
@@ -247,34 +262,16 @@ def place(tmp_path_factory):
     at = tmp_path_factory.mktemp("place")
     shutil.copytree(MINI, at / "content")
     (at / "content" / "exercises" / "doubling" / "checking").mkdir(exist_ok=True)
-    for name in ("class", "class3"):
-        for student in ("ada", "bob"):
-            (at / name / student).mkdir(parents=True)
-    environment = _environment(at, mini=True)
+    for student in ("ada", "bob"):
+        (at / "class3" / student).mkdir(parents=True)
+    for name, text in RIGHT.items():
+        put(at / name, text.encode())
+    environment = _environment(at)
 
     def ran(*words, code=0):
         done = in_process(*words, cwd=at, env=environment)
         assert done.returncode == code, done.stderr
 
-    (at / "my.toml").write_text(_SCENE)
-    (at / "late.toml").write_text(_POLICY)
-    (at / "class.csv").write_text(_ROSTER)
-    (at / "times.csv").write_text(_TIMES)
-    (at / "sheet.csv").write_text(_WORKSHEET)
-    (at / "canvas.csv").write_text(_CANVAS)
-    (at / "my.ipynb").write_text(_NOTEBOOK)
-    (at / "scheduler.json").write_text('{"type": "Scheduler", "address": "tcp://127.0.0.1:9"}')
-    for kind, text in _ANSWERS.items():
-        (at / f"a.{kind}").write_text(text)
-    question = ROOT / "quiz" / "numerical-integration.toml"
-    (at / "content" / "quiz" / "numerical-integration.toml").write_bytes(question.read_bytes())
-    for student in ("ada", "bob"):
-        (at / "class" / student / "doubling.py").write_text(_SOURCE)
-    (at / "class2" / "ada").mkdir(parents=True)
-    (at / "class2" / "ada" / "doubling.ipynb").write_text(_NOTEBOOK)
-    (at / "gradescope" / "submission_900").mkdir(parents=True)
-    (at / "gradescope" / "submission_metadata.yml").write_text(_METADATA)
-    (at / "gradescope" / "submission_900" / "doubling.py").write_text(_SOURCE)
     ran("sandbox", "play", "box-stack", "--headless", "--duration", "0.2", "--record", "run.jsonl")
     ran("grade", "run", "class", "--out", "out", "--exercise", "doubling")
     ran("notebook", "build", "doubling", "--out", "nb")
@@ -292,11 +289,11 @@ def place(tmp_path_factory):
     return at
 
 
-def _environment(at, *, mini):
+def _environment(at):
     kept = {name: value for name, value in os.environ.items() if not name.startswith("COURSE_")}
-    chosen = {"COURSE_CONTENT": str(at / "content")} if mini else {}
     paths = os.pathsep.join(filter(None, [str(ROOT), kept.get("PYTHONPATH", "")]))
-    return {**kept, **chosen, "COURSE_CACHE": str(at / "cache"), "PYTHONPATH": paths, "COLUMNS": "200"}
+    ours = {"COURSE_CONTENT": str(at / "content"), "COURSE_CACHE": str(at / "cache"), "COLUMNS": "200"}
+    return {**kept, **ours, "PYTHONPATH": paths}
 
 
 @dataclass(frozen=True)
@@ -327,12 +324,12 @@ os.write(int(sys.argv[1]), json.dumps(told).encode())
 """
 
 
-def measured(words, at, *, mini):
+def measured(words, at):
     reading, writing = os.pipe()
     with open(reading, "rb") as told:  # noqa: PTH123 - of an open descriptor
         done = subprocess.run(
             [sys.executable, "-S", "-c", _LAUNCHER, str(writing), *words],
-            cwd=at, env=_environment(at, mini=mini), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            cwd=at, env=_environment(at), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, pass_fds=[writing], check=True,
         )  # fmt: skip
         os.close(writing)
@@ -349,7 +346,7 @@ def right(place, tmp_path_factory):
         if name not in known:
             at = tmp_path_factory.mktemp("right") / "place"
             shutil.copytree(place, at)
-            known[name] = measured(DOORS[name].words, at, mini=DOORS[name].mini)
+            known[name] = measured(DOORS[name].words, at)
         return known[name]
 
     return ended
@@ -382,7 +379,7 @@ def test_a_hostile_document_is_taken_or_refused_in_words(place, right, tmp_path,
     door, at = DOORS[name], tmp_path / "place"
     shutil.copytree(place, at)
     door.documents[document](at / door.file)
-    ended = measured(door.words, at, mini=door.mini)
+    ended = measured(door.words, at)
     shown = f"{ended.code} after {ended.cpu:.1f} s of CPU, {ended.most >> 10} MB: {ended.said[:1500]}"
     assert "Traceback" not in ended.said, shown
     if name in CONTENT and ended.code == 70:

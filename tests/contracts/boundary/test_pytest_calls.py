@@ -5,6 +5,7 @@ Each test names one thing that must go on being true. When a new major of pytest
 that one file, or the cap in pyproject.toml stays.
 """
 
+import contextlib
 import gc
 import os
 import re
@@ -93,22 +94,18 @@ class Fake:
 
 @pytest.fixture
 def collect(tmp_path):
-    opened = []
+    with contextlib.ExitStack() as stack:
 
-    def collect(*sources):
-        files = []
-        for number, source in enumerate(sources or (_CHECKS,)):
-            folder = tmp_path / f"file{number}"
-            folder.mkdir(exist_ok=True)
-            path = folder / "checks.py"
-            path.write_text(textwrap.dedent(source), "utf-8")
-            files.append((path, Visibility.HIDDEN if number else Visibility.PUBLIC))
-        opened.append(CollectedChecks(files))
-        return opened[-1]
+        def collect(*sources):
+            files = []
+            for number, source in enumerate(sources or (_CHECKS,)):
+                path = tmp_path / f"file{number}" / "checks.py"
+                path.parent.mkdir(exist_ok=True)
+                path.write_text(textwrap.dedent(source), "utf-8")
+                files.append((path, Visibility.HIDDEN if number else Visibility.PUBLIC))
+            return stack.enter_context(contextlib.closing(CollectedChecks(files)))
 
-    yield collect
-    for checks in opened:
-        checks.close()
+        yield collect
 
 
 def _run(checks, name, submission):

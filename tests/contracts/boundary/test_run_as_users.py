@@ -9,6 +9,7 @@ import pytest
 
 from tests.contracts.boundary.levels import require_level
 from tests.contracts.boundary.users import IN_WORKERS, LEVELS_AND_USERS, ROOT, run_as
+from tests.unit.grading.made import notebook, put
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="users and levels of Linux")
 
@@ -61,18 +62,13 @@ def doublings(x, n):
 )
 
 
-def _notebook(cell):
-    made = {"cell_type": "code", "source": cell, "metadata": {}, "outputs": []}
-    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [made]}).encode()
-
-
 #: student -> file, content; all but the model's are hostile or broken
 CLASS = {
     "a statement bomb": (
         "doubling.ipynb",
-        _notebook(f"# get_ipython\n{_WRONG.format('pass', 'pass')}" + "x = 1\n" * 30_000),
+        notebook(f"# get_ipython\n{_WRONG.format('pass', 'pass')}" + "x = 1\n" * 30_000),
     ),
-    "brackets": ("doubling.ipynb", _notebook("%magic\ndef double(x):\n    return None\n" + "(" * 100_000)),
+    "brackets": ("doubling.ipynb", notebook("%magic\ndef double(x):\n    return None\n" + "(" * 100_000)),
     "ragged": ("doubling.py", _WRONG.format("return [[1], [2, 3]]", "return [[x], [x, x]]").encode()),
     "beyond 64 bits": ("doubling.py", _WRONG.format("return 10**30", "return [10**30] * (n + 1)").encode()),
     "infinite": ("doubling.py", _WRONG.format("return float('inf')", "return [float('nan')] * 7").encode()),
@@ -92,8 +88,7 @@ def test_a_class_of_what_once_broke_is_graded_to_the_end(level, user, tmp_path):
     # The bomb takes seconds to be read, whatever level comes after: the strongest stands for all.
     handed_in = {name: file for name, file in CLASS.items() if level == "L3" or name != "a statement bomb"}
     for student, (name, content) in handed_in.items():
-        (tmp_path / "class" / student).mkdir(parents=True)
-        (tmp_path / "class" / student / name).write_bytes(content)
+        put(tmp_path / "class" / student / name, content)
     out = tmp_path / "out"
     told = run_as(user, _RUN, str(MINI), level, str(tmp_path / "class"), str(out))
     assert told == "protection_level False\n"

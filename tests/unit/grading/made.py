@@ -4,6 +4,7 @@ import csv
 import importlib.util
 import io
 import json
+import re
 import subprocess
 import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -167,31 +168,21 @@ def make_book(path: Path, verdicts: dict[str, Verdict]) -> Gradebook:
     return book
 
 
+#: A cell: what is in quotes, where a backslash keeps the next sign, a quote too; what follows them; its end.
+_PHP_CELL = re.compile(r'(?:"((?:\\.|""|[^"\\])*)"?)?([^,\n]*)([,\n])', re.DOTALL)
+
+
 def read_by_php(text: str) -> list[list[str]]:
     """Rows of a CSV file as PHP gives them with a backslash as its escape, which is how Moodle calls it.
 
     Source: moodle/lib/csvlib.class.php, ``load_csv_content``; php-src/ext/standard/file.c, ``php_fgetcsv``.
     """
-    rows, row, cell, state = [], [], "", "start"
-    for sign in text.replace("\r\n", "\n") + "\n":
-        if state == "start" and sign == '"':
-            state = "quoted"
-        elif state == "escaped":
-            cell, state = cell + sign, "quoted"
-        elif state == "quoted":
-            state = {"\\": "escaped", '"': "closed"}.get(sign, state)
-            cell += sign * (sign != '"')
-        elif state == "closed" and sign == '"':
-            cell, state = cell + sign, "quoted"
-        elif sign in ",\n":
-            row.append(cell)
-            cell, state = "", "start"
-            if sign == "\n":
-                rows.append(row)
-                row = []
-        else:
-            cell, state = cell + sign, "plain"
-    return [row for row in rows if row != [""]]
+    rows: list[list[str]] = [[]]
+    for quoted, plain, end in _PHP_CELL.findall(text.replace("\r\n", "\n") + "\n"):
+        rows[-1].append(quoted.replace('""', '"') + plain)
+        if end == "\n":
+            rows.append([])
+    return [row for row in rows if row not in ([], [""])]
 
 
 def stillborn(

@@ -46,9 +46,16 @@ def verdict(score=5.0, state="graded", actual=None):
     )  # fmt: skip
 
 
+@pytest.fixture
+def path(tmp_path):
+    """Where the gradebook of a test lies."""
+    return tmp_path / "gradebook.sqlite"
+
+
 def sql(path, *statements):
     """Change a gradebook behind its back; how many rows each statement found."""
     with contextlib.closing(sqlite3.connect(path)) as db, db:
+        _know_digests(db)
         return [db.execute(statement).rowcount for statement in statements]
 
 
@@ -68,9 +75,8 @@ def full(path):
         book.add_override(Override("ada", "doubling", 5.0, "first"))
 
 
-def test_what_is_kept_comes_back_as_it_went_in(tmp_path):
+def test_what_is_kept_comes_back_as_it_went_in(path):
     """Numbers that JSON has not come back as words."""
-    path = tmp_path / "g.sqlite"
     with pytest.raises(NotFoundError):
         Gradebook(path)
     assert not path.exists(), "looking creates none"
@@ -86,16 +92,14 @@ def test_what_is_kept_comes_back_as_it_went_in(tmp_path):
 
 
 @pytest.mark.parametrize("content", [b"this is no database, but it is long enough to be one" * 20, b""])
-def test_what_is_no_gradebook_is_said_to_be_none(tmp_path, content):
-    path = tmp_path / "g.sqlite"
+def test_what_is_no_gradebook_is_said_to_be_none(path, content):
     path.write_bytes(content)
     with pytest.raises(IntegrityError):
         Gradebook(path)
     assert path.read_bytes() == content
 
 
-def test_a_changed_result_fails_its_checksum_and_names_the_student(tmp_path):
-    path = tmp_path / "g.sqlite"
+def test_a_changed_result_fails_its_checksum_and_names_the_student(path):
     with Gradebook(path, create=True) as book:
         book.add(Result(key(), verdict()))
     sql(path, "UPDATE results SET verdict = replace(verdict, '5.0', '9.0')")
@@ -103,8 +107,8 @@ def test_a_changed_result_fails_its_checksum_and_names_the_student(tmp_path):
         list(book.results())
 
 
-def test_grading_anew_keeps_the_old_result_beside_the_new(tmp_path):
-    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+def test_grading_anew_keeps_the_old_result_beside_the_new(path):
+    with Gradebook(path, create=True) as book:
         book.begin_run("run", {"timeout": 3.0})
         book.add(Result(key(), verdict(1)))
         book.add(Result(key(), verdict(2)))
@@ -116,11 +120,11 @@ def test_grading_anew_keeps_the_old_result_beside_the_new(tmp_path):
         assert newest.verdict.score == 3
 
 
-def test_handing_in_an_earlier_version_again_makes_its_score_count_again(tmp_path):
+def test_handing_in_an_earlier_version_again_makes_its_score_count_again(path):
     def counts():
         return [result.verdict.score for result in book.results()]
 
-    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+    with Gradebook(path, create=True) as book:
         book.add(Result(key(digest="a" * 64), verdict(1, state="grader_error")))
         assert not book.confirm(key(digest="a" * 64)), "a fault of ours does not count as graded"
         book.add(Result(key(digest="a" * 64), verdict(1)))
@@ -144,29 +148,26 @@ os._exit(9)
 """
 
 
-def test_a_reported_result_survives_the_death_of_its_process(tmp_path):
+def test_a_reported_result_survives_the_death_of_its_process(tmp_path, path):
     """The writer ends without closing anything; whoever looks next puts things in order."""
-    path = tmp_path / "g.sqlite"
     assert subprocess.run([sys.executable, "-c", _KILLED, path], cwd=ROOT, check=False).returncode == 9
-    assert (tmp_path / "g.sqlite-wal").exists()
+    assert (tmp_path / "gradebook.sqlite-wal").exists()
     with Gradebook(path) as book:
         assert len(list(book.results())) == 30
-    assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
+    assert [item.name for item in tmp_path.iterdir()] == ["gradebook.sqlite"]
 
 
-def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path):
-    path = tmp_path / "g.sqlite"
+def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path, path):
     with Gradebook(path, create=True, writing=True) as book:
         with pytest.raises(UsageError, match="Another run"):
             Gradebook(path, create=True, writing=True)
         book.add(Result(key(), verdict()))
     with Gradebook(path) as book:
         assert len(list(book.results())) == 1
-    assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
+    assert [item.name for item in tmp_path.iterdir()] == ["gradebook.sqlite"]
 
 
-def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(tmp_path):
-    path = tmp_path / "g.sqlite"
+def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(path):
     added = []
 
     def fill():
@@ -187,24 +188,21 @@ def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(tmp_path):
         book.add(Result(key("one more"), verdict()))
 
 
-def test_a_gradebook_of_the_first_format_is_brought_up_to_date(tmp_path):
-    path = tmp_path / "g.sqlite"
+def test_a_gradebook_of_the_first_format_is_brought_up_to_date(path):
     body = msgspec.json.encode(verdict(4))
-    with contextlib.closing(sqlite3.connect(path)) as db:
-        db.executescript(
-            "CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
-            "CREATE TABLE results (number INTEGER PRIMARY KEY, student TEXT NOT NULL, exercise TEXT NOT NULL,"
-            " submission_sha256 TEXT NOT NULL, grader_version TEXT NOT NULL, seed INTEGER NOT NULL,"
-            " late REAL, graded_at TEXT NOT NULL, verdict BLOB NOT NULL, verdict_sha256 TEXT NOT NULL,"
-            " UNIQUE (student, exercise, submission_sha256, grader_version, seed));"
-            "INSERT INTO meta VALUES ('seed', '7');"
-            "PRAGMA user_version = 1; PRAGMA application_id = 1668248179;"
-        )
-        db.execute(
-            "INSERT INTO results VALUES (3, 'ada', 'doubling', ?, 'v1', 7, NULL, 'then', ?, ?)",
-            ("a" * 64, body, hashlib.sha256(body).hexdigest()),
-        )
-        db.commit()
+    sql(
+        path,
+        "CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID",
+        "CREATE TABLE results (number INTEGER PRIMARY KEY, student TEXT NOT NULL, exercise TEXT NOT NULL,"
+        " submission_sha256 TEXT NOT NULL, grader_version TEXT NOT NULL, seed INTEGER NOT NULL,"
+        " late REAL, graded_at TEXT NOT NULL, verdict BLOB NOT NULL, verdict_sha256 TEXT NOT NULL,"
+        " UNIQUE (student, exercise, submission_sha256, grader_version, seed))",
+        "INSERT INTO meta VALUES ('seed', '7')",
+        f"INSERT INTO results VALUES (3, 'ada', 'doubling', '{'a' * 64}', 'v1', 7, NULL, 'then',"
+        f" x'{body.hex()}', '{hashlib.sha256(body).hexdigest()}')",
+        "PRAGMA user_version = 1",
+        "PRAGMA application_id = 1668248179",
+    )
     for _ in range(2):
         with Gradebook(path) as book:
             (found,) = book.results()
@@ -213,8 +211,7 @@ def test_a_gradebook_of_the_first_format_is_brought_up_to_date(tmp_path):
             assert book.meta()["seed"] == "7"
 
 
-def test_what_an_instructor_decided_is_kept_in_order_and_checked(tmp_path):
-    path = tmp_path / "g.sqlite"
+def test_what_an_instructor_decided_is_kept_in_order_and_checked(path):
     with Gradebook(path, create=True) as book:
         book.add_override(Override("ada", "doubling", 5.0, "first"))
         book.add_override(Override("ada", "doubling", None, ""))
@@ -242,8 +239,7 @@ def test_what_an_instructor_decided_is_kept_in_order_and_checked(tmp_path):
         "UPDATE times SET student = CAST(x'ff41' AS TEXT)",
     ],
 )
-def test_what_changed_since_it_was_closed_is_damage(tmp_path, change):
-    path = tmp_path / "g.sqlite"
+def test_what_changed_since_it_was_closed_is_damage(path, change):
     full(path)
     Gradebook(path).close()
     assert sql(path, change)[0] >= 1
@@ -260,8 +256,7 @@ def test_what_changed_since_it_was_closed_is_damage(tmp_path, change):
         "UPDATE snapshots SET packed = CAST(packed || 'x' AS BLOB)",
     ],
 )
-def test_what_is_too_large_to_be_read_at_every_opening_is_read_by_who_looks_at_everything(tmp_path, change):
-    path = tmp_path / "g.sqlite"
+def test_what_is_too_large_to_be_read_at_every_opening_is_read_by_who_looks_at_everything(path, change):
     full(path)
     with Gradebook(path, writing=True) as book:
         book.keep_snapshot("5" * 64, b"graders")
@@ -282,9 +277,8 @@ BEFORE_4 = [
 ]
 
 
-def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tmp_path):
+def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(path):
     """A run that was killed leaves none, and neither did the format before."""
-    path = tmp_path / "g.sqlite"
     full(path)
     changes = ["DELETE FROM meta WHERE key = 'seal'", "UPDATE exercises SET pass_share = 0.6"]
     sql(path, *changes, *BEFORE_4, "PRAGMA user_version = 2")
@@ -300,8 +294,8 @@ def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tm
         Gradebook(path)
 
 
-def test_of_one_witness_the_earliest_time_of_a_content_stays(tmp_path):
-    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+def test_of_one_witness_the_earliest_time_of_a_content_stays(path):
+    with Gradebook(path, create=True) as book:
         for at in (200.0, 100.0, 300.0, None):
             book.add_times([SubmittedAt("ada", "doubling", "a", "mtime", at)])
         book.add_times([SubmittedAt("ada", "doubling", "", "list", 5.0)])
@@ -393,21 +387,15 @@ def test_with_any_page_damaged_every_override_and_every_other_row_is_there(tmp_p
 
 @pytest.mark.parametrize("score", [-0.0, 0, 5, 7.5])
 def test_every_number_that_may_be_a_score_is_read_again_and_one_that_is_not_its_own_is_left_out(
-    tmp_path, score
+    tmp_path, score, path
 ):
     """`--score -0` was kept as 0, which failed its checksum in this file and in the salvaged one."""
-    path = tmp_path / "gradebook.sqlite"
     with Gradebook(path, create=True, writing=True) as book:
         book.add_override(Override("ada", "doubling", score, "x"))
-    with contextlib.closing(
-        sqlite3.connect(path)
-    ) as db:  # as that version wrote it: an own digest that is wrong
-        _know_digests(db)
-        row = "'overrides', number, student, exercise, score, reason, at, sha256"
-        db.execute("DELETE FROM meta")
-        for sql in ("sha256 = 'x'", f"row_sha256 = row_digest({row})"):
-            db.execute(f"UPDATE overrides SET {sql}")
-        db.commit()
+    # As that version wrote it: an own digest that is wrong.
+    row = "'overrides', number, student, exercise, score, reason, at, sha256"
+    wrong = ("UPDATE overrides SET sha256 = 'x'", f"UPDATE overrides SET row_sha256 = row_digest({row})")
+    sql(path, "DELETE FROM meta", *wrong)
     with Gradebook(path) as book, pytest.raises(IntegrityError, match="fails its checksum"):
         book.overrides()
     salvage(path, tmp_path / "new.sqlite")
@@ -427,19 +415,18 @@ def test_bytes_that_are_handed_in_stand_nowhere_in_the_file_as_they_are(tmp_path
         assert noise[PAGE : PAGE + 64] in as_before, "so version 1.2.0 kept it"
         assert len(stored) == len(as_before) + 17
     for kept in (stored, as_before):
-        with contextlib.closing(sqlite3.connect(path)) as db:
-            _know_digests(db)
-            db.execute("UPDATE submissions SET files = ?", (kept,))
-            db.execute("UPDATE submissions SET row_sha256 = row_digest('submissions', sha256, files)")
-            db.execute("DELETE FROM meta")
-            db.commit()
+        sql(
+            path,
+            f"UPDATE submissions SET files = x'{kept.hex()}'",
+            "UPDATE submissions SET row_sha256 = row_digest('submissions', sha256, files)",
+            "DELETE FROM meta",
+        )
         with Gradebook(path) as book:
             assert book.submission("a" * 64) == {"doubling.py": noise}
 
 
-def test_with_a_backup_beside_it_nothing_is_lost(tmp_path, whole):
+def test_with_a_backup_beside_it_nothing_is_lost(tmp_path, whole, path):
     data, due = whole.read_bytes(), rows(whole)
-    path = tmp_path / "gradebook.sqlite"
     path.write_bytes(data)
     back_up(path)
     for number in range(0, len(data) // PAGE, 3):
@@ -476,8 +463,7 @@ def test_hostile_pages_are_read_to_their_end():
             pass
 
 
-def test_backups_rotate_and_what_was_deleted_stays_deleted(tmp_path):
-    path = tmp_path / "gradebook.sqlite"
+def test_backups_rotate_and_what_was_deleted_stays_deleted(tmp_path, path):
     small_book(path)
     with Gradebook(path, writing=True) as book:
         for here in ("x" * 500, None):  # pages full of them, and then free pages

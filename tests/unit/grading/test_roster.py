@@ -13,7 +13,6 @@ from course.grading.results.effective import lift, override
 from course.grading.results.roster import Person, read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import graded_class, put, read_csv, roster_of
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
@@ -43,26 +42,20 @@ Grace,Hopper,S3,grace@x.org,Student,A
 Alan,Turing,,alan@x.org,Instructor,
 """
 OURS = "student,name,email\nada,Ada Lovelace,ada@x.org\nbob,Bob O'Neil,\ngrace,Grace Hopper,\n"
-#: Roster, and files of a class in which the second of three handed in nothing.
-CLASSES = {
-    "canvas": (CANVAS, ["lovelaceada_101_9001_doubling.py", "hoppergrace_LATE_103_9003_doubling.py"]),
-    "folders": (OURS, ["ada/doubling.py", "grace/doubling.py"]),
-}
 
 
-def made(folder, platform):
-    """A class and its roster."""
-    roster, files = CLASSES[platform]
-    for name in files:
-        put(folder / "class" / name, b"def double(x):\n    return 2 * x\n")
+def made(folder):
+    """A class of three in which the second handed in nothing, and its roster."""
+    for name in ("ada", "grace"):
+        put(folder / "class" / name / "doubling.py", b"def double(x):\n    return 2 * x\n")
     path = folder / "roster.csv"
-    path.write_text(roster, "utf-8-sig")
+    path.write_text(OURS, "utf-8-sig")
     return folder / "class", path
 
 
-def graded(folder, catalog, platform):
-    _, roster = made(folder, platform)
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
+def graded(folder, catalog):
+    _, roster = made(folder)
+    options = RunOptions(exercises=("doubling",), seed=1, roster=read_roster(roster))
     return folder / "out", graded_class(folder, catalog, options, grade=right)
 
 
@@ -71,7 +64,7 @@ def rows(path):
 
 
 def test_who_is_missing_has_a_row_and_a_page_too(tmp_path, catalog):
-    out, summary = graded(tmp_path, catalog, "folders")
+    out, summary = graded(tmp_path, catalog)
     assert (summary.missing, summary.strangers, summary.exit_code) == (["bob"], [], 0)
     found = rows(out / "grades.csv")
     assert {name: (row["state"], row["score"], row["reason"]) for name, row in found.items()} == {
@@ -85,24 +78,8 @@ def test_who_is_missing_has_a_row_and_a_page_too(tmp_path, catalog):
         assert faults(page, scripted=page is report) == []
 
 
-def test_missing_is_blank_or_zero_as_told(tmp_path, catalog):
-    out, _ = graded(tmp_path, catalog, "canvas")
-    scores = {}
-    for policy in ("blank", "zero"):
-        with open_results(out) as results:
-            options = ExportOptions(assignments={"doubling": "4711"}, missing=policy)
-            written = export(results, "canvas", out, tmp_path / f"{policy}.csv", options)
-        assert written.without_grade == []
-        table = read_csv(tmp_path / f"{policy}.csv")
-        scores[policy] = {row["ID"]: row["Doubling (4711)"] for row in table if row["ID"]}
-    assert scores == {
-        "blank": {"101": "10", "102": "", "103": "10"},
-        "zero": {"101": "10", "102": "0", "103": "10"},
-    }
-
-
 def test_an_override_settles_what_is_missing(tmp_path, catalog):
-    out, _ = graded(tmp_path, catalog, "folders")
+    out, _ = graded(tmp_path, catalog)
     with open_results(out, writing=True) as results:
         assert override(results, "bob", "doubling", 7.0, "oral exam").score == 7.0
     found = rows(out / "grades.csv")
@@ -120,7 +97,7 @@ def test_two_spellings_of_an_accent_are_one_student(tmp_path, catalog):
     name = "zoé"
     put(tmp_path / "class" / unicodedata.normalize("NFD", name) / "doubling.py", b"double = abs\n")
     roster = roster_of(tmp_path, f"student\n{unicodedata.normalize('NFC', name)}\n")
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
+    options = RunOptions(exercises=("doubling",), seed=1, roster=roster)
     summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.strangers) == ([], [])
 
@@ -175,9 +152,9 @@ def test_a_plain_folder_that_two_rows_could_mean_is_nobody(tmp_path):
 
 
 def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path, catalog):
-    submissions, roster = made(tmp_path, "folders")
+    submissions, roster = made(tmp_path)
     roster.write_text(CANVAS, "utf-8")
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
+    options = RunOptions(exercises=("doubling",), seed=1, roster=read_roster(roster))
     (submissions / "grace").rename(submissions / "hopper")
     summary = graded_class(tmp_path, catalog, options, grade=right)
     tried = (
@@ -243,9 +220,9 @@ def test_what_platforms_hand_out_is_read_unchanged(tmp_path):
 
 
 def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path, catalog):
-    submissions, _ = made(tmp_path, "folders")
+    submissions, _ = made(tmp_path)
     (submissions / "eva").mkdir()
-    options = RunOptions(terms=Terms(), seed=1)
+    options = RunOptions(seed=1)
     summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.exit_code) == (["eva"], 0)
     found = rows(tmp_path / "out" / "grades.csv")
@@ -253,7 +230,7 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path, catalog):
         "ada": "graded", "eva": "missing", "grace": "graded",
     }  # fmt: skip
     (submissions / "eva" / "doubling.py").write_text("double = abs\n")
-    again = RunOptions(terms=Terms(), resume=True)
+    again = RunOptions(resume=True)
     summary = graded_class(tmp_path, catalog, again, grade=right)
     assert (summary.missing, rows(tmp_path / "out" / "grades.csv")["eva"]["state"]) == ([], "graded")
     with open_results(tmp_path / "out") as results:

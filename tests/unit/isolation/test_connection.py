@@ -22,12 +22,11 @@ _SOURCE = b"def f(x):\n    return x\n\nlast = 1\n"
 
 
 class Liar:
-    """A spawner and the worker it starts: a thread that sends what it is told to, then waits to be ended."""
+    """A spawner and the worker it starts: a thread that sends each frame of its script, or calls it."""
 
     level = "L1"
 
-    def __init__(self, *frames, script=None):
-        self._frames = frames
+    def __init__(self, *script):
         self._script = script
         self.printed = ""
 
@@ -39,13 +38,12 @@ class Liar:
         return self
 
     def _play(self):
-        try:
-            for frame in self._frames:
-                self._theirs.sendall(frame)
-            if self._script is not None:
-                self._script(self._theirs)
-        except OSError:
-            pass
+        with contextlib.suppress(OSError):
+            for step in self._script:
+                if callable(step):
+                    step(self._theirs)
+                else:
+                    self._theirs.sendall(step)
 
     def output(self):
         return self.printed
@@ -86,9 +84,8 @@ def _closed():
         _opened.pop().close()
 
 
-def _connect(*frames, script=None, seconds=2.0, loaded=True):
-    begin = (READY, LOADED) if loaded else ()
-    liar = Liar(*begin, *frames, script=script)
+def _connect(*script, seconds=2.0, loaded=True):
+    liar = Liar(*((READY, LOADED) if loaded else ()), *script)
     _opened.append(Connection(liar, {"a.py": _SOURCE}, "a.py", Deadline(seconds)))
     return _opened[-1]
 
@@ -126,7 +123,7 @@ def test_a_lockdown_that_failed_is_our_fault():
 
 def test_a_worker_that_ends_before_it_is_ready_is_our_fault():
     with pytest.raises(IsolationError, match="ready"):
-        _connect(script=lambda theirs: theirs.close(), loaded=False)
+        _connect(lambda theirs: theirs.close(), loaded=False)
 
 
 def test_a_submission_cannot_claim_that_the_lockdown_failed():
@@ -139,7 +136,7 @@ def test_time_to_start_is_not_taken_from_the_submission():
         threading.Event().wait(0.4)
         theirs.sendall(READY + LOADED)
 
-    connection = _connect(script=late, seconds=0.2, loaded=False)
+    connection = _connect(late, seconds=0.2, loaded=False)
     assert connection.functions == {"f", "g"}
 
 
@@ -294,10 +291,8 @@ def test_a_refusal_of_ours_outweighs_what_came_of_it():
 
 
 def test_calling_each_other_across_the_wire_has_an_end():
-    frames = [
-        _frame(Kind.CALLBACK, _value(0, [0, None])[5:-1].replace(b"l\2", b"l\3", 1) + b"N" + b"w\0\0\0\0")
-    ] * 20
-    connection = _connect(*frames)
+    lent = _value(0, [0, None])[5:-1].replace(b"l\2", b"l\3", 1) + b"N" + b"w\0\0\0\0"
+    connection = _connect(*[_frame(Kind.CALLBACK, lent)] * 20)
 
     def again(function):
         return function(1.0)
@@ -355,7 +350,7 @@ _HANGS = {
 
 @pytest.mark.parametrize("script", _HANGS.values(), ids=_HANGS.keys())
 def test_nothing_holds_the_grader_beyond_the_deadline(script):
-    connection = _connect(script=script)
+    connection = _connect(script)
     connection.deadline = Deadline(0.3)
     large = np.zeros(1 << 19)  # five seconds of slow reading
     start = monotonic()

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from time import monotonic, sleep
+from unittest.mock import Mock
 
 import pytest
 
@@ -19,33 +20,24 @@ from tests.turns import soak_unless
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks Linux for CPU times")
 
 
-class Fake:
-    """A process whose clock and state are set by hand."""
-
-    def __init__(self):
-        self.cpu = 0.0
-        self.sleeps = False
-
-    def cpu_s(self):
-        return self.cpu
-
-    def asleep(self):
-        return self.sleeps
+def process():
+    """One whose clock and state are set by hand."""
+    return Mock(spec=["cpu_s", "asleep"], **{"cpu_s.return_value": 0.0, "asleep.return_value": False})
 
 
 def test_waiting_for_a_processor_costs_nothing():
-    fake, deadline = Fake(), Deadline(0.2, wall=60)
+    fake, deadline = process(), Deadline(0.2, wall=60)
     deadline.watch(fake)
     sleep(0.4)
     assert not deadline.passed()
     assert deadline.used == 0
-    fake.cpu = 0.21
+    fake.cpu_s.return_value = 0.21
     assert deadline.passed()
 
 
 def test_sleeping_while_the_grader_waits_counts():
-    fake, deadline = Fake(), Deadline(0.5, wall=60)
-    fake.sleeps = True
+    fake, deadline = process(), Deadline(0.5, wall=60)
+    fake.asleep.return_value = True
     deadline.watch(fake)
     looks = 0
     while not deadline.passed() and looks < 100:
@@ -57,9 +49,9 @@ def test_sleeping_while_the_grader_waits_counts():
 def test_what_several_workers_use_adds_up():
     deadline = Deadline(1.0, wall=60)
     for _ in range(3):
-        fake = Fake()
+        fake = process()
         deadline.watch(fake)
-        fake.cpu = 0.3
+        fake.cpu_s.return_value = 0.3
     deadline.watch(None)
     assert deadline.used == pytest.approx(0.9)
     assert not deadline.passed()
@@ -67,7 +59,7 @@ def test_what_several_workers_use_adds_up():
 
 def test_the_wall_clock_has_the_last_word():
     deadline = Deadline(100, wall=0.1)
-    deadline.watch(Fake())
+    deadline.watch(process())
     sleep(0.15)
     assert deadline.passed()
     deadline.postpone(60)
@@ -75,9 +67,9 @@ def test_the_wall_clock_has_the_last_word():
 
 
 def test_nothing_need_be_asked_before_it_can_have_passed():
-    fake, deadline = Fake(), Deadline(5.0)
+    fake, deadline = process(), Deadline(5.0)
     deadline.watch(fake)
-    fake.cpu = 2.0
+    fake.cpu_s.return_value = 2.0
     assert not deadline.passed()
     assert deadline.earliest - monotonic() == pytest.approx(3.0, abs=0.5)
 

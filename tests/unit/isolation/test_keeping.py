@@ -1,5 +1,7 @@
 """Sandboxes that one session takes over from another: those of its kind, that still keep a canary in."""
 
+from unittest.mock import Mock, call
+
 import pytest
 
 from course.isolation import probe
@@ -11,37 +13,18 @@ def sandbox_for(*arguments, **limits):
     return open_sandbox(*arguments, **limits)[0]
 
 
-class Sandbox:
-    """One of no kind in particular, which says what becomes of it."""
-
-    level = Level.L2
-
-    def __init__(self):
-        self.told = []
-        self.proves = True
-
-    def spawn(self):
-        self.told.append("spawned")
-
-    def tidy(self):
-        self.told.append("tidied")
-
-    def close(self):
-        self.told.append("closed")
-
-
 @pytest.fixture
 def opened(monkeypatch):
     made = []
 
     def new(*_, **__):
-        made.append(Sandbox())
+        made.append(Mock(level=Level.L2, proves=True))
         return made[-1]
 
     monkeypatch.setattr(probe, "open_spawner", new)
     monkeypatch.setattr(probe, "proves_itself", lambda one: one.proves)
     yield made
-    assert {one.told.count("closed") for one in made} == {1}
+    assert {one.close.call_count for one in made} == {1}
 
 
 def test_one_session_takes_over_from_another_of_its_kind(opened):
@@ -51,7 +34,7 @@ def test_one_session_takes_over_from_another_of_its_kind(opened):
             sandbox.spawn()
             sandbox.close()
             sandbox.close()
-        assert [one.told for one in opened] == [["spawned"] * 3]
+        assert [one.method_calls for one in opened] == [[call.spawn()] * 3]
         sandbox_for(("numpy", "scipy")).close()
         sandbox_for(("numpy",), at_most=Level.L1).close()
         assert len(opened) == 3
@@ -77,13 +60,13 @@ def test_what_no_longer_proves_itself_is_closed_and_replaced(opened):
         sandbox_for(("numpy",)).close()
         opened[0].proves = False
         sandbox_for(("numpy",)).close()
-        assert [one.told for one in opened] == [["closed"], []]
+        assert [one.method_calls for one in opened] == [[call.close()], []]
 
 
 def test_what_is_still_in_use_at_the_end_is_closed_by_its_session(opened):
     with kept_sandboxes(), kept_sandboxes():
         sandbox = sandbox_for(("numpy",))
-    assert opened[0].told == []
+    assert opened[0].method_calls == []
     sandbox.close()
 
 

@@ -39,11 +39,8 @@ def _connect(found, source):
 
 
 def _connect_once(found):
-    connection = _connect(found, "f = lambda: 1\n")
-    try:
-        return int(connection.call("f"))
-    finally:
-        connection.close()
+    with contextlib.closing(_connect(found, "f = lambda: 1\n")) as connection:
+        return connection.call("f")
 
 
 @pytest.fixture

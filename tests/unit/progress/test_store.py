@@ -90,18 +90,7 @@ def test_a_damaged_record_is_named_and_not_touched(store):
     assert store.path.read_bytes() == before
 
 
-def test_repair_keeps_the_damaged_file_and_starts_a_new_one(store):
-    store.path.parent.mkdir()
-    store.path.write_bytes(b"no database at all, whatever its name says" * 20)
-    before = store.path.read_bytes()
-    repair = store.repair()
-    assert repair.kept.read_bytes() == before
-    assert store.events() == ()
-    store.append("start", "doubling")
-    assert store.repair() is None
-
-
-def test_repair_carries_over_what_can_still_be_read(store):
+def test_repair_keeps_the_damaged_file_and_carries_over_what_can_still_be_read(store):
     data = [json.dumps({"number": number, "padding": "x" * 500}) for number in range(400)]
     store._add([("2026-11-22T10:00:00+00:00", "check", "doubling", text) for text in data])
     data = bytearray(store.path.read_bytes())
@@ -114,6 +103,8 @@ def test_repair_carries_over_what_can_still_be_read(store):
     numbers = [event.data["number"] for event in store.events()]
     assert repair.carried == len(numbers) > 50
     assert numbers == sorted(numbers)
+    assert repair.kept.read_bytes() == data
+    assert store.repair() is None, "all is well"
 
 
 def test_an_event_that_is_not_json_is_damage(store):

@@ -137,17 +137,21 @@ def test_an_answer_that_is_no_option_is_an_error(bank):
         mark(bank.pose(4), {"sums": "z", "colours": "a"})
 
 
+def fresh(bank, asked, chance):
+    """A seed for who was asked these, drawn by that chance."""
+    dice = random.Random(chance)
+    return fresh_seed(bank, asked, lambda: dice.randrange(MAX_SEED + 1))
+
+
 def test_a_first_attempt_asks_the_first_variant_of_each_question(bank):
     first = {document.value.id: document.value.variant[0].id for document in bank.documents}
     for start in range(50):
-        chance = random.Random(start)
-        seed = fresh_seed(bank, {}, lambda: chance.randrange(MAX_SEED + 1))  # noqa: B023
+        seed = fresh(bank, {}, start)
         assert {name: bank.variant(name, seed) for name in bank.ids} == first
 
 
 def test_a_question_that_is_new_to_a_student_starts_with_its_first_variant(bank):
-    chance = random.Random(3)
-    seed = fresh_seed(bank, {"sums": 4}, lambda: chance.randrange(MAX_SEED + 1))
+    seed = fresh(bank, {"sums": 4}, 3)
     assert bank.variant("sums", seed) != bank.variant("sums", 4)
     assert (
         bank.variant("colours", seed) == bank.documents[list(bank.ids).index("colours")].value.variant[0].id
@@ -156,8 +160,7 @@ def test_a_question_that_is_new_to_a_student_starts_with_its_first_variant(bank)
 
 def test_a_retake_asks_everything_otherwise(bank):
     for seed in range(100):
-        chance = random.Random(seed)
-        again = fresh_seed(bank, dict.fromkeys(bank.ids, seed), lambda: chance.randrange(MAX_SEED + 1))  # noqa: B023
+        again = fresh(bank, dict.fromkeys(bank.ids, seed), seed)
         assert all(bank.variant(name, again) != bank.variant(name, seed) for name in bank.ids)
 
 

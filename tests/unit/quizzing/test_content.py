@@ -33,11 +33,6 @@ def numbers(text):
     return [float(found.replace(",", "")) for found in re.findall(r"\d[\d,]*(?:\.\d+)?", text)]
 
 
-def test_the_questions_of_the_chapter_are_among_those_of_the_course(bank):
-    of_the_chapter = {"why-simulate", "which-engine", "sim-to-real-gap", "digital-twin"}
-    assert of_the_chapter | {"numerical-integration"} <= {*bank.ids}
-
-
 def test_the_audit_finds_nothing(bank):
     catalog = Catalog()
     findings = Findings(catalog.content.root)
@@ -49,7 +44,6 @@ def test_every_variant_is_reached_in_a_thousand_seeds(bank):
     for document in bank.documents:
         question = document.value
         reached = Counter(bank.variant(question.id, seed) for seed in range(1000))
-        assert len(question.variant) >= 4
         for variant in question.variant:
             assert reached[variant.id] > 0.6 * 1000 / len(question.variant)
 

@@ -1,5 +1,6 @@
 """What a student sees at home alone: the line that hangs, soon, and what the file prints."""
 
+import contextlib
 import signal
 from pathlib import Path
 
@@ -49,12 +50,11 @@ def deadlines(monkeypatch):
     """How long each load and each check may take, in s of CPU time."""
     made = []
 
-    class Noted(Deadline):
-        def __init__(self, seconds, wall=None):
-            made.append(seconds)
-            super().__init__(seconds, wall)
+    def noted(seconds, wall=None):
+        made.append(seconds)
+        return Deadline(seconds, wall)
 
-    monkeypatch.setattr("course.scoring.remote.Deadline", Noted)
+    monkeypatch.setattr("course.scoring.remote.Deadline", noted)
     return made
 
 
@@ -100,13 +100,12 @@ def test_a_check_that_takes_its_time_of_a_right_solution_is_waited_for():
     assert exercise.patience("tune_other_fleets", False) == pytest.approx(20 * slow)
 
 
-def test_a_grading_run_waits_its_time_and_asks_nothing(deadlines):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("COURSE_CONTENT", str(MINI))
-        catalog = Catalog()
-        terms = Terms(timeout=0.2)
-        with GradingSession(catalog.exercise("doubling"), catalog, scope="full", terms=terms) as session:
-            found = hung(session, SOLUTION + HELPER + HANGS)
+def test_a_grading_run_waits_its_time_and_asks_nothing(deadlines, monkeypatch):
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
+    catalog = Catalog()
+    terms = Terms(timeout=0.2)
+    with GradingSession(catalog.exercise("doubling"), catalog, scope="full", terms=terms) as session:
+        found = hung(session, SOLUTION + HELPER + HANGS)
     assert deadlines[0] == 0.2
     assert found
     assert {(check.message, check.traceback) for check in found} == {
@@ -124,15 +123,12 @@ def test_a_module_that_hangs_while_it_loads_is_named_by_its_line(home):
 @pytest.mark.parametrize("level", list(Level))
 def test_every_level_can_be_asked(level):
     require_level(level)
-    made = spawner(level, ("numpy",))
     source = b"def f():\n    while True:\n        pass\n"
-    try:
+    with contextlib.closing(spawner(level, ("numpy",))) as made:
         worker = Connection(made, {"a.py": source}, "a.py", Deadline(10), asks=True)
         worker.deadline = Deadline(0.2)
         with pytest.raises(StudentFailure) as failure:
             worker.call("f")
-    finally:
-        made.close()
     assert (failure.value.kind, failure.value.type, failure.value.line) == ("timeout", "loop", 2)
 
 

@@ -360,3 +360,4 @@ def test_of_an_exception_in_several_lines_the_first_is_repeated_where_the_advice
     assert finding.help.endswith("has no `np.float`. Use `float`.")
     whole = finding_of(StudentFailure("error", type="ValueError", message="a\nb"), shown=True)
     assert whole.message == "Your code raised ValueError: a\\nb."
+    assert "README" not in whole.help, "a warm-up's has no example"

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
+from unittest.mock import Mock
 
 import msgspec
 import pytest
@@ -195,15 +196,9 @@ def test_what_is_no_verdict_of_the_runs_graders_is_our_fault(doubling, answer, c
 def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(doubling, monkeypatch):
     monkeypatch.setattr(coordinator, "_TICK_S", 0.01)
 
-    class Nobody:
-        def places(self):
-            return 0
-
-        def send(self, _payload, _done):
-            pass
-
+    nobody = Mock(**{"places.return_value": 0})
     with pytest.raises(MissingCapabilityError, match="no workers left"):
-        grade(Nobody(), entries_of(doubling, 2), patience_s=0.05)
+        grade(nobody, entries_of(doubling, 2), patience_s=0.05)
 
 
 def test_messages_of_another_format_are_refused_and_not_half_understood():
@@ -219,19 +214,9 @@ def test_messages_of_another_format_are_refused_and_not_half_understood():
 
 
 def test_nothing_is_pickled_but_the_name_of_a_function_and_bytes():
-    sent = []
-
-    class Future:
-        def add_done_callback(self, _):
-            pass
-
-    class Client:
-        def submit(self, *args, **_):
-            sent.append(args)
-            return Future()
-
-    connect.DaskWorkers(Client()).send(b"payload", lambda _: None)
-    ((function, payload),) = sent
+    client = Mock()
+    connect.DaskWorkers(client).send(b"payload", lambda _: None)
+    function, payload = client.submit.call_args.args
     assert type(payload) is bytes
     names = [op.name for op, _, _ in pickletools.genops(pickle.dumps((function, payload)))]
     assert names.count("STACK_GLOBAL") == 1
@@ -243,44 +228,22 @@ def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands():
     pytest.importorskip("distributed", reason="needs the extra `cluster`")
     from distributed import KilledWorker
 
-    class Future:
-        def __init__(self, status, error=None, value=None):
-            self.status, self._error, self._value = status, error, value
+    def understood(status, error=None, *, scheduler="running"):
+        seen, future, client = [], Mock(status=status), Mock(status=scheduler)
+        future.exception.return_value, future.result.return_value = error, b"x"
+        client.submit.return_value.add_done_callback = lambda call: call(future)
+        connect.DaskWorkers(client).send(b"", seen.append)
+        return seen[0]
 
-        def exception(self):
-            return self._error
-
-        def result(self):
-            return self._value
-
-    seen = []
-
-    class Client:
-        status = "running"
-
-        def submit(self, *_, **__):
-            return self
-
-        def add_done_callback(self, call):
-            call(self.future)
-
-        future: Future
-
-    client = Client()
-    killed = KilledWorker("key", None, 3)
     absent = RuntimeError("while reading the graph")
     absent.__cause__ = ModuleNotFoundError("No module named 'course'")
-    for client.future in (
-        Future("finished", value=b"x"), Future("error", killed), Future("lost"), Future("cancelled"),
-        Future("error", absent), Future("error", ZeroDivisionError("1/0")),
-    ):  # fmt: skip
-        connect.DaskWorkers(client).send(b"", seen.append)
-    assert seen[:3] == [b"x", LostBatch(4), LostBatch(1)]
-    codes = [error.code for error in seen[3:]]
-    assert codes == ["no_scheduler", "version_mismatch", "internal"]
-    client.future, client.status = Future("lost"), "connecting"
-    connect.DaskWorkers(client).send(b"", seen.append)
-    assert seen[-1].code == "no_scheduler"
+    assert understood("finished") == b"x"
+    assert understood("error", KilledWorker("key", None, 3)) == LostBatch(4)
+    assert understood("lost") == LostBatch(1)
+    assert understood("cancelled").code == "no_scheduler"
+    assert understood("error", absent).code == "version_mismatch"
+    assert understood("error", ZeroDivisionError("1/0")).code == "internal"
+    assert understood("lost", scheduler="connecting").code == "no_scheduler"
 
 
 # -- a worker, with a real grader process -----------------------------------------------------------------

@@ -65,13 +65,9 @@ def serve(sock, context, stop):
             return
         with contextlib.suppress(OSError), client:
             client.settimeout(5)
-            if context is None:
-                client.sendall(b"hello")
-                client.recv(1)
-            else:
-                with context.wrap_socket(client, server_side=True) as secure:
-                    secure.sendall(b"hello")
-                    secure.recv(1)
+            with context.wrap_socket(client, server_side=True) if context else client as greeted:
+                greeted.sendall(b"hello")
+                greeted.recv(1)
 
 
 @contextlib.contextmanager

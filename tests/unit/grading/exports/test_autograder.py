@@ -70,25 +70,11 @@ def test_its_scripts_are_shell(unpacked, script):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(tmp_path, solution, monkeypatch):
-    """The total is shown at once; a comparison with a drawn number would tell one bit of it each time."""
-    (tmp_path / "submission").mkdir()
-    seeds = []
-
-    def noted(entries, terms):
-        seeds.append(terms.seed)
-        return right(entries, terms)
-
-    monkeypatch.setattr(container, "grade_all", noted)
-    for what in (b"", b"# below 0.5?\n", b""):
-        (tmp_path / "submission" / "doubling.py").write_bytes(solution + what)
-        assert graded(tmp_path)["score"] == 10
-    assert seeds[0] == seeds[2] != seeds[1]
-    assert all(0 <= seed < 2**63 for seed in seeds)
-
-
-def graded(tmp_path, **changes):
-    """The body of the results for the submission there, whose exit code is always 0."""
+def graded(tmp_path, source, **changes):
+    """The body of the results for a submission with that file, or none; the exit code is always 0."""
+    (tmp_path / "submission").mkdir(exist_ok=True)
+    if source is not None:
+        (tmp_path / "submission" / "doubling.py").write_bytes(source)
     snapshot = Snapshot.take(content())
     (tmp_path / SNAPSHOT).write_bytes(snapshot.packed)
     facts = {"exercises": ["doubling"], "required": True, "seed": 1, "timeout": 5.0, "at_least": "L1"}
@@ -98,21 +84,32 @@ def graded(tmp_path, **changes):
     return json.loads(results.read_bytes())
 
 
+def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(tmp_path, solution, monkeypatch):
+    """The total is shown at once; a comparison with a drawn number would tell one bit of it each time."""
+    seeds = []
+
+    def noted(entries, terms):
+        seeds.append(terms.seed)
+        return right(entries, terms)
+
+    monkeypatch.setattr(container, "grade_all", noted)
+    for what in (b"", b"# below 0.5?\n", b""):
+        assert graded(tmp_path, solution + what)["score"] == 10
+    assert seeds[0] == seeds[2] != seeds[1]
+    assert all(0 <= seed < 2**63 for seed in seeds)
+
+
 def test_what_cannot_be_graded_is_explained_to_the_student(tmp_path):
-    (tmp_path / "submission").mkdir()
-    body = graded(tmp_path)
+    body = graded(tmp_path, None)
     assert body["score"] == 0
     assert "There is no doubling.py" in body["tests"][0]["output"]
-    body = graded(tmp_path, required=False)
+    body = graded(tmp_path, None, required=False)
     assert (body["score"], body["tests"]) == (0, [])
     assert "doubling/doubling.py" in body["output"]
 
 
 @pytest.mark.parametrize("changes", [{"exercises": ["none"]}, {"at_least": "L9"}, {"graders": "0" * 64}])
 def test_a_fault_of_ours_gives_no_score_and_always_a_results_file(tmp_path, solution, changes):
-    (tmp_path / "submission").mkdir()
-    (tmp_path / "submission" / "doubling.py").write_bytes(solution)
-    body = graded(tmp_path, **changes)
-    assert "score" not in body
-    assert "tests" not in body
+    body = graded(tmp_path, solution, **changes)
+    assert body.keys().isdisjoint({"score", "tests"})
     assert "not of yours" in body["output"]

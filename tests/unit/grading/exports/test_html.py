@@ -6,6 +6,7 @@ import hashlib
 import re
 import statistics
 import sys
+from unittest.mock import Mock
 
 import jinja2
 import msgspec
@@ -30,34 +31,32 @@ from course.grading.exports.html_report.pages import (
 )
 from course.grading.exports.html_report.tally import MOST_ROWS, Tally
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.records import GradedExercise, Key, Override, Result, SubmittedAt
+from course.grading.gradebook.records import GradedExercise, Key, Override, Result
 from course.grading.results.effective import Results
 from course.grading.results.late import in_days
 from course.grading.results.roster import Person, Roster
 from course.grading.running.folder import open_results
 from course.printable import one_line
 from course.scoring.verdict import Problem, Status
+from tests.unit.grading.exports.test_exports import SECRETS, everybody
 from tests.unit.grading.made import (
-    BROKEN,
     HALF,
     HOSTILE,
     REFUSED,
     RIGHT,
-    SECRET,
     WRONG,
     check,
-    digest,
     key,
     make_book,
+    put,
     read_csv,
     verdict,
 )
 from tests.unit.grading.pages import Page, faults, read_page
-from tests.unit.grading.test_results import DUE, POLICY
+from tests.unit.grading.test_results import POLICY
 
 #: Names of one sort more: longer than any screen, from right to left, markup inside markup.
 NAMES = [*HOSTILE, "y" * 10_000, "אבי כהן", "محمد", "</bdi><b>bold", '" onclick="x', "&lt;", "`code`"]
-SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]
 ALL = ExportOptions()
 
 
@@ -81,19 +80,12 @@ def quiz_verdict(right):
 def out(tmp_path_factory):
     """A class with every name, every outcome, a quiz, overrides and people who are late."""
     folder = tmp_path_factory.mktemp("html")
-    verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(NAMES)}
-    verdicts |= {"late": RIGHT, "set": HALF, "broken": BROKEN, "wrong": WRONG}
-    with make_book(folder, verdicts) as book:
+    with everybody(folder, NAMES, wrong=WRONG) as book:
         book.set_exercises([GradedExercise("quiz", "Quiz", 5.0, 0.8, 1_000_000)])
         for at, name in enumerate(NAMES[:6]):
             book.add(Result(key(name, "quiz"), quiz_verdict(at)))
-        book.add_override(Override("set", "doubling", 8.25, 'said "=1+1", <b>then</b> left\nearly'))
         book.add_override(Override("set", "halving", 1.5, "shown at the board"))
         book.add_override(Override("nothing handed in", "doubling", 3.0, "on paper"))
-        book.add_times(
-            [SubmittedAt("late", "doubling", digest("late"), "gradescope", DUE.timestamp() + 2 * 86_400)]
-        )
-        book.set_meta(late_policy=POLICY)
     with open_results(folder, writing=True):
         pass  # what lies beside a gradebook is written at the end of whatever changes it
     return folder
@@ -120,14 +112,9 @@ def test_templates_are_compiled_once_where_that_can_be_kept(tmp_path, monkeypatc
                 loader=jinja2.DictLoader({"page": text}),
                 bytecode_cache=_Compiled(str(tmp_path / name), "%s.cache"),
             )
-            compile_ = environment.compile
-
-            def compiling(source, *more, then=compile_, into=compiled):
-                into.append(source)
-                return then(source, *more)
-
-            monkeypatch.setattr(environment, "compile", compiling)
+            monkeypatch.setattr(environment, "compile", Mock(wraps=environment.compile))
             assert environment.get_template("page").render() == text
+            compiled += [source for (source, *_), _ in environment.compile.call_args_list]
         assert compiled == (["one", "two"] if kept else ["one", "one", "two"])
 
 
@@ -411,8 +398,7 @@ def test_nothing_is_replaced_that_no_export_to_this_page_made(tmp_path, target, 
         if there.startswith("an"):
             export(results, "html", tmp_path / "out", web / "a.html", ALL)
         else:
-            (web / there).parent.mkdir(parents=True)
-            (web / there).write_text("mine")
+            put(web / there, b"mine")
         before = {path: path.read_bytes() for path in web.rglob("*.*")}
         with pytest.raises(UsageError) as caught:
             export(results, name, tmp_path / "out", web / target, ALL)

@@ -13,7 +13,6 @@ from course.grading.results.effective import override
 from course.grading.results.roster import read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import graded_class, put, read_by_php
 from tests.unit.grading.running.test_run import right
 
@@ -72,7 +71,7 @@ def out(tmp_path_factory, catalog):
         place = folder / "class" / f"{name}_assignsubmission_file"
         put(place / module, b"def double(x):\n    return 2 * x\n")
     roster = read_roster(write(folder / "sheet.csv", SHEET))
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
+    options = RunOptions(exercises=("doubling",), seed=1, roster=roster)
     summary = graded_class(folder, catalog, options, grade=right)
     assert summary.missing == ["=Bob_102"]
     return folder / "out"
@@ -172,29 +171,27 @@ def test_a_sheet_that_has_our_own_grades_is_filled_in_again(tmp_path, out):
     assert (written.rows, written.kept) == (2, [])
 
 
-def test_the_grade_is_on_moodles_scale_with_its_comma(tmp_path, out):
-    at = HEADINGS.index("Maximum Grade")
-    sheet = write(tmp_path / "s.csv", [[*row[:at], "12,50", *row[at + 1 :]] for row in SHEET])
-    filled(out, sheet, tmp_path / "back.csv")
-    assert "12,5" in (tmp_path / "back.csv").read_text()
-    assert taken_by_moodle(tmp_path / "back.csv", 12.5)["101"][0] == 12.5
-
-
 @pytest.mark.parametrize(
-    "heading", ["Maximum grade", "maximum grade", pytest.param(" MAXIMUM GRADE ", id="capitals and spaces")]
+    ("heading", "most", "grade"),
+    [
+        ("Maximum Grade", "12,50", "12,5"),
+        ("Maximum grade", "12.50", "12.5"),
+        ("maximum grade", "12.50", "12.5"),
+        pytest.param(" MAXIMUM GRADE ", "12.50", "12.5", id="capitals and spaces"),
+    ],
 )
-def test_moodles_headings_are_known_whatever_their_letter_case(tmp_path, out, heading):
+def test_the_grade_is_on_moodles_scale_with_its_comma_whatever_the_letter_case_of_the_heading(
+    tmp_path, out, heading, most, grade
+):
     """Source: moodle/mod/assign/lang/en/assign.php, ``maxgrade``."""
     at = HEADINGS.index("Maximum Grade")
-    sheet = write(
-        tmp_path / "s.csv",
-        [[*row[:at], "12.50", *row[at + 1 :]] for row in SHEET],
-        [*HEADINGS[:at], heading, *HEADINGS[at + 1 :]],
-    )
+    rows = [[*row[:at], most, *row[at + 1 :]] for row in SHEET]
+    sheet = write(tmp_path / "s.csv", rows, [*HEADINGS[:at], heading, *HEADINGS[at + 1 :]])
     written = filled(out, sheet, tmp_path / "back.csv")
-    head, *rows = cells_of(tmp_path / "back.csv")
+    head, ada, *_ = cells_of(tmp_path / "back.csv")
     assert head[at] == heading, "as it came"
-    assert rows[0][4] == "12.5"
+    assert ada[4] == grade
+    assert taken_by_moodle(tmp_path / "back.csv", 12.5)["101"][0] == 12.5
     assert not [note for note in written.notes if "no maximum" in note]
 
 

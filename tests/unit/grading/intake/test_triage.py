@@ -7,6 +7,7 @@ import os
 import re
 import sys
 import tarfile
+from unittest.mock import DEFAULT, Mock
 
 import pytest
 
@@ -21,7 +22,6 @@ from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.handed_in.limits import MAX_FILE
 from course.printable import quoted
-from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import graded_class, notebook, put, read_class, roster_of, zipped
 from tests.unit.grading.running.test_run import right
 
@@ -158,6 +158,10 @@ ASKED = {
     ),
     "a notebook and its code": ({"doubling.py": SOURCE, "doubling.ipynb": NOTEBOOK}, "ambiguous_files",
         "doubling.py"),
+    "a notebook and its code, in one zip": (
+        {"all.zip": zipped({"doubling/doubling.py": SOURCE, "doubling/doubling.ipynb": NOTEBOOK})},
+        "ambiguous_files", "all.zip/doubling/doubling.py"
+    ),
     "a notebook and its code, of Windows": (
         {"a.py": SOURCE.replace(b"\n", b"\r\n"), "a.ipynb": NOTEBOOK}, "no_file", "a.py"
     ),
@@ -425,7 +429,7 @@ def test_one_file_is_proposed_where_its_functions_are(catalog):
 
 
 def graded(tmp_path, catalog, **more):
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, **more)
+    options = RunOptions(exercises=("doubling",), seed=1, **more)
     return graded_class(tmp_path, catalog, options, grade=right)
 
 
@@ -524,15 +528,7 @@ def test_a_name_that_is_no_text_is_listed_and_settled_like_any_other(tmp_path, c
 def test_what_nobody_thought_of_costs_its_own_submission_only(tmp_path, catalog, monkeypatch, where, error):
     for student in ("ada", "bob", "cy"):
         lay(tmp_path / "class", student, **{"doubling.py": SOURCE})
-    original = getattr(students, where)
-    calls = []
-
-    def second_fails(*given, **more):
-        calls.append(None)
-        if len(calls) == 2:
-            raise error
-        return original(*given, **more)
-
+    second_fails = Mock(wraps=getattr(students, where), side_effect=[DEFAULT, error, *[DEFAULT] * 9])
     monkeypatch.setattr(students, where, second_fails)
     summary = graded(tmp_path, catalog)
     assert (summary.states, summary.exit_code) == ({"graded": 2, "ungradable": 1}, 6)

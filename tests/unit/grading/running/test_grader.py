@@ -1,6 +1,8 @@
 """One grader and many exercises: few sessions are open at a time, and verdicts are the same."""
 
+import contextlib
 import shutil
+from unittest.mock import Mock
 
 import pytest
 
@@ -21,26 +23,28 @@ ORDER = ("doubling", "halving", "doubling", "doubling", "halving")
 def test_a_grader_closes_its_oldest_session_for_another(catalog, monkeypatch, most, opened):
     monkeypatch.setenv("COURSE_CONTENT", str(catalog.content.root))
     monkeypatch.setattr(grader, "_MOST_OPEN", most)
-    collected = []
-    real = session.CollectedChecks
-    monkeypatch.setattr(session, "CollectedChecks", lambda *a, **k: collected.append(a) or real(*a, **k))
-    one = grader._Grader(Config(Terms(), 0))
-    try:
-        with kept_sandboxes():
-            for exercise in ORDER:
-                solution = catalog.content.root / "solutions" / exercise / f"{exercise}.py"
-                verdict = one.answer(Job(exercise, {solution.name: solution.read_bytes()})).verdict
-                assert (verdict.exercise, verdict.all_pass) == (exercise, True)
-                assert len(one._sessions) <= most
-    finally:
-        one.close()
-    assert len(collected) == opened
+    collected = Mock(wraps=session.CollectedChecks)
+    monkeypatch.setattr(session, "CollectedChecks", collected)
+    with contextlib.closing(grader._Grader(Config(Terms(), 0))) as one, kept_sandboxes():
+        for exercise in ORDER:
+            solution = catalog.content.root / "solutions" / exercise / f"{exercise}.py"
+            verdict = one.answer(Job(exercise, {solution.name: solution.read_bytes()})).verdict
+            assert (verdict.exercise, verdict.all_pass) == (exercise, True)
+            assert len(one._sessions) <= most
+    assert collected.call_count == opened
 
 
 # -- a fault in the files of one exercise --------------------------------------------------------------------
 
-_NOT = ":1: it cannot be imported ("
-#: What stands above an exercise's hidden checks, if there are any, and what is said of that file.
+_NOT = "graders/{name}/checks.py:1: it cannot be imported ("
+_MORE = """\
+import pytest
+@pytest.mark.task("halve")
+@pytest.mark.points(10)
+def test_more(submission):
+    "It is worth more than the whole exercise"
+"""
+#: What stands above an exercise's hidden checks, if there are any, and what is said of it.
 FAULTS = [
     ("import no_such_module", f"{_NOT}ModuleNotFoundError: No module named 'no_such_"),
     ("1 / 0", f"{_NOT}ZeroDivisionError: division by zero)."),
@@ -54,8 +58,12 @@ FAULTS = [
         "from course.scoring import nothing_of_this_name",
         f"{_NOT}ImportError: cannot import name 'nothing_of_th",
     ),
-    (None, ": it is missing, and {name} has "),
-    ("def test_unmarked(submission):\n    'It has no points'\n", ":1: check test_unmarked: it lacks a mark"),
+    (None, "graders/{name}/checks.py: it is missing, and {name} has "),
+    (
+        "def test_unmarked(submission):\n    'It has no points'\n",
+        "graders/{name}/checks.py:1: check test_unmarked: it lacks a mark",
+    ),
+    (_MORE, "exercises/{name}/exercise.toml: it says 2 points, and the checks are worth 12."),
 ]
 
 
@@ -83,19 +91,5 @@ def test_the_fault_of_one_exercise_is_named_and_costs_no_other(tmp_path, copied)
         name = f"fault-{number}"
         verdict = verdicts[name]
         assert (verdict.state, verdict.error and verdict.error.code) == ("grader_error", "check_file")
-        assert verdict.error.message.startswith(f"graders/{name}/checks.py{said.replace('{name}', name)}")
+        assert verdict.error.message.startswith(said.replace("{name}", name))
         assert str(copied) not in verdict.error.message
-
-
-def test_checks_worth_other_points_than_their_exercise_give_it_no_scores(tmp_path, copied):
-    checks = copied / "graders" / "halving" / "checks.py"
-    checks.write_text(checks.read_text("utf-8").replace("points(1)", "points(11)", 1), "utf-8")
-    shutil.copytree(copied / "solutions", tmp_path / "class" / "ada")
-    summary = graded_class(tmp_path, Catalog(), RunOptions(terms=Terms(level="L1"), seed=1))
-    assert summary.exit_code == 70
-    with Gradebook(tmp_path / "out" / "gradebook.sqlite") as book:
-        verdicts = {one.key.exercise: one.verdict for one in book.results()}
-    assert verdicts["doubling"].passed
-    assert verdicts["halving"].state == "grader_error"
-    told = "exercises/halving/exercise.toml: it says 2 points, and the checks are worth 12."
-    assert verdicts["halving"].error.message == told

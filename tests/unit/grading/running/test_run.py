@@ -36,11 +36,8 @@ WRONG = b"\ndef double(x):\n    return x\n"
 def make_class(folder, solution, students):
     """Every third student is wrong about one function."""
     for number in range(students):
-        place = folder / f"student-{number:03}"
-        place.mkdir(parents=True, exist_ok=True)
-        (place / "doubling.py").write_bytes(
-            solution + (WRONG if number % 3 == 0 else b"") + b"# %d\n" % number
-        )
+        mistake = WRONG if number % 3 == 0 else b""
+        put(folder / f"student-{number:03}" / "doubling.py", solution + mistake + b"# %d\n" % number)
 
 
 def quiz_record(catalog, **more):
@@ -64,8 +61,7 @@ def test_results_go_neither_into_a_folder_that_is_there_nor_among_the_submission
     """A large file of a student's was among the graders: the run was refused, with its graders "damaged"."""
     content = tmp_path / "content"
     shutil.copytree(catalog.content.root, content)
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "notes.txt").write_text("keep", "utf-8")
+    put(tmp_path / "mine" / "notes.txt", b"keep")
     for folder, out, said in (
         (tmp_path / "class", tmp_path / "mine", "nothing was touched"),
         (tmp_path / "class", tmp_path / "class" / "out", "among the submissions"),
@@ -199,8 +195,7 @@ def test_a_submission_that_stops_its_grader_holds_nobody_up(
 def test_a_run_that_is_refused_leaves_its_name_free(tmp_path, catalog, solution):
     """Also after it noted what could not be read: the corrected command will note that again."""
     make_class(tmp_path / "class", solution, 2)
-    (tmp_path / "class" / "aaa").mkdir()
-    (tmp_path / "class" / "aaa" / "doubling.py").write_bytes(b"")
+    put(tmp_path / "class" / "aaa" / "doubling.py", b"")
     out, options = tmp_path / "out", RunOptions(exercises=("doubling",), terms=Terms(at_least="L1"))
 
     def refused(entries, _):
@@ -363,8 +358,7 @@ def test_a_student_counts_as_done_when_graded_and_not_when_read(tmp_path, catalo
 
 def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(tmp_path, catalog, solution):
     make_class(tmp_path / "class", solution, 1)
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "gradebook.new-1-0").write_bytes(b"half")
+    put(tmp_path / "out" / "gradebook.new-1-0", b"half")
     options = RunOptions(exercises=("doubling",), resume=True)
     graded_class(tmp_path, catalog, options, grade=right)
     names = {path.name for path in (tmp_path / "out").iterdir()}
@@ -397,14 +391,13 @@ def as_written(entries, terms):
 
 def test_a_download_with_several_exercises_is_graded_and_its_times_are_kept(tmp_path, catalog, solution):
     folder = tmp_path / "class"
-    folder.mkdir()
     for name in ("ada_1_10_doubling.py", "ada_1_11_halving.py", "bob_LATE_2_12_doubling.py", "cy_3_13_x.txt"):
-        (folder / name).write_bytes(name.encode())
+        put(folder / name, name.encode())
         os.utime(folder / name, (1_000_000, 1_000_000))
-    (folder / "cy_3_14_mine.zip").write_bytes(b"PK")
-    (folder / "eve_4_15_doubling.py").write_bytes(b"x")
-    (folder / "adam_4_16_doubling.py").write_bytes(b"x")
-    summary = grade_class(folder, tmp_path / "out", catalog, RunOptions(), lambda *_: None, grade=right)
+    put(folder / "cy_3_14_mine.zip", b"PK")
+    put(folder / "eve_4_15_doubling.py", b"x")
+    put(folder / "adam_4_16_doubling.py", b"x")
+    summary = graded_class(tmp_path, catalog, RunOptions(), grade=right)
     assert (summary.exit_code, summary.states["graded"], summary.states["ungradable"]) == (6, 3, 3)
     assert summary.unrecognised == []
     with open_results(tmp_path / "out") as results:

@@ -1,17 +1,16 @@
 """Graders frozen per run: what judges is what was there when the run began, whatever is edited meanwhile."""
 
-import ast
 import json
 import os
 import shutil
 import signal
 import sys
 import time
-from contextlib import suppress
 from functools import partial
 from importlib.util import cache_from_source
 from pathlib import Path
 
+import grimp
 import pytest
 
 from course.catalog.load import Catalog
@@ -26,6 +25,7 @@ from course.grading.running.snapshot import Snapshot, frozen, in_use
 from course.scoring.explain.story import forget_tables
 from course.scoring.graders import grader_files, grader_version
 from course.scoring.judging.submission import Terms
+from tests.journeys.processes import below
 from tests.unit.grading.running.test_run import make_class, right, scores
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -43,17 +43,6 @@ def edit(course):
     text = checks.read_text("utf-8")
     assert DUE in text
     checks.write_text(text.replace(DUE, EDITED), "utf-8")
-
-
-def graders():
-    found = []
-    for task in Path(f"/proc/{os.getpid()}/task").iterdir():
-        with suppress(FileNotFoundError, ProcessLookupError):  # threads and processes end while we look
-            children = (task / "children").read_text().split()
-            found += [
-                pid for pid in children if b"running.grader" in Path(f"/proc/{pid}/cmdline").read_bytes()
-            ]
-    return [int(pid) for pid in found]
 
 
 def options(level="L1", **more):
@@ -114,7 +103,7 @@ def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(tmp_path, course, s
     def report(*_):
         if not killed:
             edit(course)
-            killed.extend(graders())
+            killed.extend(pid for pid, (_, line) in below(os.getpid()).items() if "running.grader" in line)
             for pid in killed:
                 os.kill(pid, signal.SIGKILL)
 
@@ -218,31 +207,11 @@ def test_checks_come_compiled_and_are_compiled_where_they_lie(course, monkeypatc
 def test_what_grades_imports_nothing_that_is_not_in_the_snapshot(course):
     """Not at the top and not in a function: a module that is missing would be found out by some student."""
     with frozen(Snapshot.take(course.content)) as graders_then:
-        missing = []
-        for path in (graders_then.folder / "course").rglob("*.py"):
-            for node in ast.walk(_without_types(ast.parse(path.read_bytes()))):
-                for name in _imported(node):
-                    target = graders_then.folder / name.replace(".", "/")
-                    if not (target.with_suffix(".py").is_file() or target.is_dir()):
-                        missing.append(f"{path.name}: {name}")
-        assert missing == []
-
-
-def _without_types(tree):
-    class Drop(ast.NodeTransformer):
-        def visit_If(self, node):
-            is_types = isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
-            return None if is_types else self.generic_visit(node)
-
-    return Drop().visit(tree)
-
-
-def _imported(node):
-    if isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
-        return [node.module] if node.module.split(".")[0] == "course" else []
-    if isinstance(node, ast.Import):
-        return [item.name for item in node.names if item.name.split(".")[0] == "course"]
-    return []
+        paths = [path.relative_to(graders_then.folder) for path in graders_then.folder.glob("course/**/*.py")]
+    there = {".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in paths}
+    graph = grimp.build_graph("course", exclude_type_checking_imports=True, cache_dir=None)
+    missing = {name: graph.find_modules_directly_imported_by(name) - there for name in there}
+    assert not {name: absent for name, absent in missing.items() if absent}
 
 
 def test_a_warm_up_alone_takes_its_words_along_and_knows_when_they_change(tmp_path, course):

@@ -53,50 +53,27 @@ def test_a_workspace_behind_a_link_works(course, workspace, tmp_path):
 
 def test_a_check_while_a_watch_runs_loses_nothing(course, workspace):
     module = workspace / "doubling" / "doubling.py"
-    with _watch(course, workspace) as watch:
+    watch = subprocess.Popen(
+        [sys.executable, "-u", "-m", "course", "watch", "doubling", "--json"],
+        cwd=workspace, env=course.environ, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8",
+    )  # fmt: skip
+    with watch:
+        said_in_time(watch, "Score")  # it is warm
         for number in range(3):
             module.write_text(RIGHT + f"# {number}\n" + f"a{number} = 1\n")
             assert course("check", cwd=workspace).returncode == 0
         module.write_text(HALF)
-        watch.wait_for("Score 2")  # interrupted before that, it may have recorded a run that it has not told
-        runs = watch.stop()["runs"]
+        said_in_time(watch, "Score 2")  # interrupted before, it may have recorded a run that it has not told
+        watch.send_signal(signal.SIGINT)
+        runs = json.loads(watch.communicate(timeout=30)[0])["runs"]
     body = json.loads(course("progress", "--json", cwd=workspace).stdout)
     assert body["exercises"][0]["checks_run"] == len(runs) + 3
 
 
-class _watch:  # noqa: N801 - a context manager, used like a function
-    """A watch of ``doubling``, warm before it is handed over."""
-
-    def __init__(self, course, workspace):
-        self.process = subprocess.Popen(
-            [sys.executable, "-u", "-m", "course", "watch", "doubling", "--json"],
-            cwd=workspace,
-            env=course.environ,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-        )
-        self.wait_for("Score")
-
-    def wait_for(self, words):
-        """Read what it says until a line begins with ``words``."""
-        for line in self.process.stderr:
-            assert "Traceback" not in line
-            if line.startswith(words):
-                return
-        raise AssertionError(f"the watch ended without saying {words!r}")
-
-    def stop(self):
-        """Interrupt it and return its one object."""
-        self.process.send_signal(signal.SIGINT)
-        out, _ = self.process.communicate(timeout=30)
-        return json.loads(out)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.communicate()
+def said_in_time(watch, words):
+    """Read what a watch says until a line begins with ``words``."""
+    for line in watch.stderr:
+        assert "Traceback" not in line
+        if line.startswith(words):
+            return
+    pytest.fail(f"the watch ended without saying {words!r}")

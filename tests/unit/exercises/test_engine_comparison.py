@@ -162,31 +162,22 @@ def test_a_value_that_is_a_small_whole_number_of_info_by_chance_is_not_shown_bes
 # -- choosing ---------------------------------------------------------------------------------------------
 
 
-class Chooser:
+def chooser(function):
     """A submission whose ``choose_engine`` is the given function."""
-
-    def __init__(self, function):
-        self._function = function
-
-    def call(self, _, *args):
-        self.asking = args
-        try:
-            return self._function(*args)
-        except TypeError as error:
-            raise kit.StudentFailure("error", type=type(error).__name__) from None
-
-    def call_each(self, name, calls):
-        return [self.call(name, *call) for call in calls]
+    return LocalSubmission("", replaced={"choose_engine": function})
 
 
 def test_an_exception_that_comes_where_everything_was_measured_too_is_shown_with_its_call():
     reports, needs = {"a": {"noise_db": None, "limit": 0.5, "cost": 1.0}}, [measured.need("limit", "<=", 1)]
-    chooser = Chooser(lambda reports, needs: needs["key"])
+    asked = []
+
+    def choose(*args):
+        asked.append(args)
+        return args[1]["key"]
+
     with pytest.raises(kit.StudentFailure):  # which says nothing of missing values
-        choosing.expect_choices(
-            chooser, [(reports, needs, "a"), (reports, [measured.need("limit", "<=", 1)], None)]
-        )
-    assert chooser.asking == (reports, needs)
+        choosing.expect_choices(chooser(choose), [(reports, needs, "a"), (reports, needs, None)])
+    assert asked[-1] == (reports, needs)
 
 
 @pytest.mark.parametrize(
@@ -201,16 +192,15 @@ def test_digits_that_decide_are_shown(value, costs, shown):
     reports = {name: {"restitution": 0.6, "cost": cost} for name, cost in zip("ab", costs, strict=True)}
     needs = [measured.need("restitution", "==", value)]
     with pytest.raises(kit.CheckFailed) as failed:
-        choosing.expect_choices(Chooser(lambda *_: "b"), [(reports, needs, "a")])
+        choosing.expect_choices(chooser(lambda *_: "b"), [(reports, needs, "a")])
     told = format_input(failed.value.finding.input)
     assert all(f": {digits}}}" in told for digits in shown)
 
 
 def test_an_argument_that_was_changed_is_seen_whatever_was_put_there():
-    reports, needs = {"a": {"cost": 1.0}}, [measured.need("order", ">=", 2)]
-    spoilt = kit.Inspected(None, [{"a": np.zeros(3)}, needs], shared=False)
+    spoils = chooser(lambda reports, needs: reports.update(a=np.zeros(3)))
     with pytest.raises(kit.CheckFailed) as failed:
-        choosing.expect_untouched(types.SimpleNamespace(call_inspect=lambda *_: spoilt), reports, needs)
+        choosing.expect_untouched(spoils, {"a": {"cost": 1.0}}, [measured.need("order", ">=", 2)])
     assert failed.value.finding.diagnosis == "MUTATES_INPUT"
 
 
@@ -246,26 +236,28 @@ SCENARIOS = {
 }  # fmt: skip
 
 
+def shipped(setting, key):
+    """The measurement that a key of a report comes from, and how a value of it is told."""
+    (engine, words), (scenario, unit) = setting.split(", "), SCENARIOS[key]
+    row = reference.row(engine, scenario, measured.SETTINGS[words])
+    return row, lambda value: unit * (abs(value) if "error" in key else value)
+
+
 def test_what_is_chosen_meets_its_requirements_in_every_phase_and_from_every_start():
     for needs, answer in REAL_QUESTIONS:
         for need in needs if answer else ():
-            key = need["key"]
-            if key in SCENARIOS:
-                name, unit = SCENARIOS[key]
-                engine, words = answer.split(", ")
-                row = reference.row(engine, name, measured.SETTINGS[words])
-                reach = [unit * (abs(x) if "error" in key else x) for x in (row.lowest, row.highest)]
+            if (key := need["key"]) in SCENARIOS:
+                row, told = shipped(answer, key)
+                reach = map(told, (row.lowest, row.highest))
                 assert all(right.meets({key: x}, need) for x in reach), (answer, need)
 
 
 def test_the_reports_of_real_engines_are_the_measurements_that_ship():
-    for name, report in measured.reports().items():
-        engine, words = name.split(", ")
+    for setting, report in measured.reports().items():
         for key in ("rebound_m", "fall_error", "slope_error", "pendulum_loss", "rate", "clash_error"):
-            scenario, unit = SCENARIOS[key]
-            row = reference.row(engine, scenario, measured.SETTINGS[words])
+            row, told = shipped(setting, key)
             found = max(map(abs, row.samples)) if key == "clash_error" else row.value
-            assert report[key] == pytest.approx(unit * (abs(found) if "error" in key else found), rel=0.006)
+            assert report[key] == pytest.approx(told(found), rel=0.006)
         assert report["cost"] == pytest.approx(1 / report["rate"], rel=0.006)
     keys = {need["key"] for needs, _ in REAL_QUESTIONS for need in needs} - {"price_eur"}
     assert keys <= set(next(iter(measured.reports().values())))

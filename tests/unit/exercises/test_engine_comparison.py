@@ -45,6 +45,13 @@ def cases_of(report, run=lambda box: [("free", (0.0,), (0.0,), 0.1, 1, (0.0,))])
     ]
 
 
+def finding(check, *given):
+    """What a check finds where it fails."""
+    with pytest.raises(kit.CheckFailed) as failed:
+        check(*given)
+    return failed.value.finding
+
+
 # -- judging ----------------------------------------------------------------------------------------------
 
 
@@ -79,9 +86,7 @@ def test_an_engine_that_brings_the_measurement_down_does_not_take_the_others_wit
 )
 def test_a_value_that_is_none_of_its_kind_or_off_costs_its_own_points_and_not_those_of_the_form(key, wrong):
     found = cases_of(lambda truth: truth | {key: wrong})
-    with pytest.raises(kit.CheckFailed) as failed:
-        judging.expect_key(found, key, 0)
-    said = failed.value.finding.message
+    said = finding(judging.expect_key, found, key, 0).message
     assert key in said or said.startswith(judging.MESSAGES[key])
     for other in set(bench.KEYS) - {key}:
         judging.expect_key(found, other, 0)
@@ -122,9 +127,8 @@ def hits(box):
     ],
 )
 def test_a_probe_says_what_it_sees_and_no_more(key, slip, code, runs):
-    with pytest.raises(kit.CheckFailed) as failed:
-        judging.expect_key(cases_of(lambda truth: {**truth, key: slip(truth)}, *runs), key, 0)
-    assert failed.value.finding.diagnosis == code
+    found = cases_of(lambda truth: {**truth, key: slip(truth)}, *runs)
+    assert finding(judging.expect_key, found, key, 0).diagnosis == code
 
 
 @pytest.mark.parametrize("scope", ["public", "full"])
@@ -146,17 +150,14 @@ def test_a_value_is_called_kept_only_where_it_is_that_of_an_engine_that_shows_th
     found, truth = cases_of(dict), {**boxes.TRUTH["balsa"], "linear_damping": 2.1}
     other = dataclasses.replace(boxes.BALSA, damping=2.1, omega=2.5)
     found.append(bench.Case("twin", other, truth, runs=found[0].runs, report=dict(boxes.TRUTH["balsa"])))
-    with pytest.raises(kit.CheckFailed) as failed:
-        judging.expect_key(found, "linear_damping", 0)
-    assert failed.value.finding.diagnosis is None
+    assert finding(judging.expect_key, found, "linear_damping", 0).diagnosis is None
 
 
 def test_a_value_that_is_a_small_whole_number_of_info_by_chance_is_not_shown_beside_it():
     truth = {**boxes.TRUTH["anvil"], "friction_anisotropy": 1.0}
     case = bench.Case("anvil", boxes.ANVIL, truth, report={**truth, "friction_anisotropy": boxes.ANVIL.mass})
-    with pytest.raises(kit.CheckFailed) as failed:
-        judging.expect_key([case], "friction_anisotropy", 0)
-    assert boxes.ANVIL.mass not in failed.value.finding.input.values()
+    shown = finding(judging.expect_key, [case], "friction_anisotropy", 0).input
+    assert boxes.ANVIL.mass not in shown.values()
 
 
 # -- choosing ---------------------------------------------------------------------------------------------
@@ -191,17 +192,15 @@ def test_an_exception_that_comes_where_everything_was_measured_too_is_shown_with
 def test_digits_that_decide_are_shown(value, costs, shown):
     reports = {name: {"restitution": 0.6, "cost": cost} for name, cost in zip("ab", costs, strict=True)}
     needs = [measured.need("restitution", "==", value)]
-    with pytest.raises(kit.CheckFailed) as failed:
-        choosing.expect_choices(chooser(lambda *_: "b"), [(reports, needs, "a")])
-    told = format_input(failed.value.finding.input)
+    found = finding(choosing.expect_choices, chooser(lambda *_: "b"), [(reports, needs, "a")])
+    told = format_input(found.input)
     assert all(f": {digits}}}" in told for digits in shown)
 
 
 def test_an_argument_that_was_changed_is_seen_whatever_was_put_there():
     spoils = chooser(lambda reports, needs: reports.update(a=np.zeros(3)))
-    with pytest.raises(kit.CheckFailed) as failed:
-        choosing.expect_untouched(spoils, {"a": {"cost": 1.0}}, [measured.need("order", ">=", 2)])
-    assert failed.value.finding.diagnosis == "MUTATES_INPUT"
+    given = {"a": {"cost": 1.0}}, [measured.need("order", ">=", 2)]
+    assert finding(choosing.expect_untouched, spoils, *given).diagnosis == "MUTATES_INPUT"
 
 
 REAL_QUESTIONS = [*measured.QUESTIONS.values(), *choices.REAL]
@@ -296,10 +295,9 @@ def test_a_fact_is_judged_by_what_it_says(judge, asked, found):
 
 @pytest.mark.parametrize("value", ["None", "0.002"])
 def test_a_step_in_quotation_marks_is_told_as_that(value):
-    with pytest.raises(kit.CheckFailed) as failed:
-        listing.step_of(value, "the default_step_s of ode")
-    assert failed.value.finding.actual == repr(value)
-    assert "quotation marks" in failed.value.finding.help
+    found = finding(listing.step_of, value, "the default_step_s of ode")
+    assert found.actual == repr(value)
+    assert "quotation marks" in found.help
 
 
 @pytest.mark.parametrize("bad", [None, 3, [1, [2]], np.zeros(3), {"a": 1}, 10**400, "", True])

@@ -3,7 +3,9 @@
 import os
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,6 +18,17 @@ FLAGS = [
 ]  # fmt: skip
 #: Its rules change with its version: a newer one is tried on purpose, not by accident.
 _AXE = "axe-core@4.14.1"
+
+
+def on_the_page(canvas: Any, view: Sequence[float], x: float, y: float) -> tuple[float, float]:
+    """Where a place of a scene is on the page, whose canvas shows this view: left, bottom, right, top."""
+    box = canvas.bounding_box()
+    left, bottom, right, top = view
+    scale = min(box["width"] / (right - left), box["height"] / (top - bottom))
+    return (
+        box["x"] + box["width"] / 2 + (x - (left + right) / 2) * scale,
+        box["y"] + box["height"] / 2 - (y - (bottom + top) / 2) * scale,
+    )
 
 
 def axe_core(folder: Path) -> str:

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -29,15 +30,9 @@ class Terminal:
             "PYTHONPATH": str(ROOT),
         }
         shell = ("env", "PS1=$ ", "COLORTERM=truecolor", "sh")
-        subprocess.run(
-            [
-                *("tmux", "-S", self._socket, "-f", os.devnull, "new-session", "-d"),
-                *("-x", str(size[0]), "-y", str(size[1]), "-c", str(folder), *shell),
-            ],
-            env=environment,
-            check=True,
-            timeout=20,
-        )
+        started = ("tmux", "-S", self._socket, "-f", os.devnull, "new-session", "-d")
+        place = ("-x", str(size[0]), "-y", str(size[1]), "-c", str(folder))
+        subprocess.run([*started, *place, *shell], env=environment, check=True, timeout=20)
 
     def _tmux(self, *arguments: str) -> str:
         done = subprocess.run(
@@ -71,22 +66,21 @@ class Terminal:
     def screen(self) -> str:
         return self._tmux("capture-pane", "-p")
 
+    def until(self, true: Callable[[str], bool], seconds: float = 40.0) -> str:
+        """The screen, once something is true of it."""
+        end = time.monotonic() + seconds
+        while not true(screen := self.screen()):
+            assert time.monotonic() < end, screen
+            time.sleep(0.1)
+        return screen
+
     def wait(self, *words: str, seconds: float = 40.0) -> str:
         """The screen, once it shows one of these."""
-        until = time.monotonic() + seconds
-        while time.monotonic() < until:
-            screen = self.screen()
-            if any(word in screen for word in words):
-                return screen
-            time.sleep(0.1)
-        pytest.fail(f"{words} did not appear on:\n{self.screen()}")
+        return self.until(lambda screen: any(word in screen for word in words), seconds)
 
     def wait_until_gone(self, word: str) -> None:
         """Until the screen no longer shows this."""
-        until = time.monotonic() + 40.0
-        while word in (screen := self.screen()):
-            assert time.monotonic() < until, screen
-            time.sleep(0.1)
+        self.until(lambda screen: word not in screen)
 
     def wait_for_other(self, screen: str) -> str:
         """The screen, once it is another one and still."""

@@ -33,9 +33,9 @@ from course.grading.running.batch import grade_all  # noqa: E402
 from course.grading.running.folder import open_results  # noqa: E402
 from course.grading.running.rerun import RerunOptions, rerun  # noqa: E402
 from course.grading.running.run import GradeAll, RunOptions, Summary, grade_class  # noqa: E402
+from tests.journeys.processes import below, resident  # noqa: E402
 
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
-PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 def make_class(folder: Path, catalog: Catalog, exercise: str, students: int) -> None:
@@ -57,8 +57,8 @@ def run(
     jobs: int,
     seen: Callable[[int], None],
     grade: GradeAll | None = None,
-) -> Summary:
-    """One run into a folder of its own, beside the class and removed with it.
+) -> tuple[Path, Summary]:
+    """One run into a folder of its own, beside the class and removed with it; that folder, and its outcome.
 
     Removing it before the next run would slow that one down: a file system is loath to use again what was
     given up seconds ago, and making a file takes ten times as long meanwhile.
@@ -75,11 +75,11 @@ def run(
     grade = grade or partial(grade_all, graders=jobs)
     summary = grade_class(folder, out, catalog, options, report, grade=grade)
     assert summary.exit_code == 0, summary.troubled[:3]
-    return summary
+    return out, summary
 
 
 def write_share(folder: Path, catalog: Catalog, options: argparse.Namespace) -> None:
-    summary = run(folder, catalog, options.exercise, 1, lambda _: None)
+    _, summary = run(folder, catalog, options.exercise, 1, lambda _: None)
     graded = summary.states["graded"]
     print(
         f"write: {summary.write_s / summary.elapsed_s:.2%} of the time (target: under 2 %); "
@@ -92,7 +92,8 @@ def jobs_ratio(folder: Path, catalog: Catalog, options: argparse.Namespace) -> N
     times: dict[int, list[float]] = {1: [], 2: []}
     for _ in range(3):
         for jobs, seconds in times.items():
-            seconds.append(run(folder, catalog, options.exercise, jobs, lambda _: None).elapsed_s)
+            _, summary = run(folder, catalog, options.exercise, jobs, lambda _: None)
+            seconds.append(summary.elapsed_s)
     best = {jobs: min(seconds) for jobs, seconds in times.items()}
     print(
         f"jobs: -j 2 is {best[1] / best[2]:.2f} times -j 1 (target: at least 1.8), "
@@ -106,7 +107,9 @@ def memory(folder: Path, catalog: Catalog, options: argparse.Namespace) -> None:
 
     def seen(count: int) -> None:
         if count % 20 == 0:
-            samples.append((count, sum(map(resident, graders())), resident(os.getpid())))
+            mine = below(os.getpid())
+            graders = [pid for pid, (_, line) in mine.items() if "course.grading.running.grader" in line]
+            samples.append((count, sum(map(resident, graders)), resident(os.getpid())))
 
     run(folder, catalog, options.exercise, 1, seen)
     students, tenth = options.submissions, options.submissions // 10
@@ -174,9 +177,7 @@ def rerun_ratio(folder: Path, catalog: Catalog, options: argparse.Namespace) -> 
     jobs = options.workers
     grade = partial(grade_all, graders=jobs)
     for _ in range(options.rounds):
-        out = Path(tempfile.mkdtemp(prefix="run-", dir=folder.parent)) / "out"
-        asked = RunOptions(exercises=(options.exercise,), seed=1)
-        summary = grade_class(folder, out, catalog, asked, lambda *_: None, grade=grade)
+        out, summary = run(folder, catalog, options.exercise, jobs, lambda _: None)
         costs["run"].append(summary.elapsed_s)
         began = time.monotonic()
         with open_results(out) as results:
@@ -188,24 +189,6 @@ def rerun_ratio(folder: Path, catalog: Catalog, options: argparse.Namespace) -> 
         )
     ratio = min(costs["rerun"]) / min(costs["run"])
     print(f"rerun: takes {ratio:.2f} times as long as the run (target: at most 1), best of {options.rounds}")
-
-
-def graders() -> list[int]:
-    """The grader processes this one started."""
-    found = []
-    for task in Path(f"/proc/{os.getpid()}/task").iterdir():
-        children = (task / "children").read_text().split()
-        found += [int(child) for child in children if b"course.grading.running.grader" in command_line(child)]
-    return found
-
-
-def command_line(pid: str) -> bytes:
-    return Path(f"/proc/{pid}/cmdline").read_bytes()
-
-
-def resident(pid: int) -> int:
-    """Bytes of memory a process has in use."""
-    return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * PAGE
 
 
 KINDS = {

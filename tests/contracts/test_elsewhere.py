@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -41,33 +42,24 @@ def workspace(tmp_path_factory):
     return root
 
 
-def test_a_check_runs_at_the_lowest_level_without_posix(workspace):
-    code, out, err = run(workspace, "check", "doubling", "--json")
-    assert code == 0, err
-    assert json.loads(out)["ok"] is True
+def test_a_check_at_the_lowest_level_and_handing_in_work_without_posix(workspace, tmp_path):
+    target = tmp_path / "for you.zip"
+    for words in (("check", "doubling"), ("submit", "-o", str(target))):
+        code, out, err = run(workspace, *words, "--json")
+        assert code == 0, err
+        assert json.loads(out)["ok"] is True
+    assert target.is_file()
 
 
 def test_a_function_that_hangs_or_dies_costs_its_checks_without_posix(workspace, tmp_path):
-    (tmp_path / "a b").mkdir()
-    root = tmp_path / "a b"
-    run(root, "init")
-    run(root, "start", "doubling")
-    source = (MINI_COURSE / "solutions" / "doubling" / "doubling.py").read_text("utf-8")
-    source += "\ndef double(x):\n    import os\n    os._exit(3)\n"
-    (root / "doubling" / "doubling.py").write_text(source, "utf-8")
+    root = shutil.copytree(workspace, tmp_path / "a b")
+    with (root / "doubling" / "doubling.py").open("a", encoding="utf-8") as module:
+        module.write("\ndef double(x):\n    import os\n    os._exit(3)\n")
     code, out, err = run(root, "check", "doubling", "--json")
     assert code == 1, err
     states = {(check["task"], check["status"]) for check in json.loads(out)["checks"]}
     assert ("double", "crash") in states
     assert ("doublings", "pass") in states
-
-
-def test_handing_in_works_without_posix(workspace, tmp_path):
-    target = tmp_path / "for you.zip"
-    code, out, err = run(workspace, "submit", "-o", str(target), "--json")
-    assert code == 0, err
-    assert target.is_file()
-    assert json.loads(out)["ok"] is True
 
 
 def test_the_quiz_is_taken_without_posix(tmp_path):
@@ -84,33 +76,29 @@ def test_a_fault_report_and_the_doctor_work_without_posix(workspace, tmp_path):
     assert "protection: L1" in text
 
 
+def console(encoding):
+    """What makes a Python of this machine write as it would to such a console."""
+    return {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0", "LC_ALL": "C"}
+
+
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1"])
 def test_a_console_of_another_encoding_gets_what_it_can_show(tmp_path, encoding):
     """A character that it cannot show is a question mark, never the end of the program."""
-    program = ("-m", "course")
-    content = {"COURSE_CONTENT": ""}
-    code, out, _ = run(
-        tmp_path, "lesson", "why-simulate", "--plain", program=program, encoding=encoding,
-        PYTHONIOENCODING=encoding, PYTHONUTF8="0", LC_ALL="C", **content,
-    )  # fmt: skip
+    there = {"program": ("-m", "course"), "COURSE_CONTENT": "", **console(encoding)}
+    code, out, _ = run(tmp_path, "lesson", "why-simulate", "--plain", encoding=encoding, **there)
     assert code == 0
     assert "pilot" in out
     # JSON is UTF-8 everywhere: it is read by programs.
-    code, out, _ = run(
-        tmp_path, "lesson", "why-simulate", "--json", program=program, PYTHONIOENCODING=encoding,
-        PYTHONUTF8="0", LC_ALL="C", **content,
-    )  # fmt: skip
+    _, out, _ = run(tmp_path, "lesson", "why-simulate", "--json", **there)
     assert json.loads(out)["id"] == "why-simulate"
 
 
 @pytest.mark.parametrize("line", ["", "demo", "lesson numerical-integration --plain", "check doubling"])
 def test_a_console_of_windows_shows_what_is_met_first(workspace, line):
     real = line.startswith(("demo", "lesson"))
-    code, out, _ = run(
-        workspace.parent if real else workspace, *line.split(), program=("-m", "course"), encoding="cp437",
-        COURSE_CONTENT="" if real else str(MINI_COURSE),
-        PYTHONIOENCODING="cp437", PYTHONUTF8="0", LC_ALL="C",
-    )  # fmt: skip
+    folder, content = (workspace.parent, "") if real else (workspace, str(MINI_COURSE))
+    there = {"program": ("-m", "course"), "COURSE_CONTENT": content, **console("cp437")}
+    code, out, _ = run(folder, *line.split(), encoding="cp437", **there)
     assert code == 0
     assert len(out.splitlines()) > 3
 
@@ -121,6 +109,5 @@ def test_files_are_utf_8_whatever_the_locale_says(tmp_path):
     root.mkdir()
     strict = {"PYTHONUTF8": "0", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONWARNDEFAULTENCODING": "1"}
     program = ("-W", "error::EncodingWarning", "-m", "course")
-    assert run(root, "init", "--with", "github,vscode", program=program, encoding="latin-1", **strict)[0] == 0
-    assert run(root, "start", "doubling", program=program, encoding="latin-1", **strict)[0] == 0
-    assert run(root, "bug", program=program, encoding="latin-1", **strict)[0] == 0
+    for words in ("init --with github,vscode", "start doubling", "bug"):
+        assert run(root, *words.split(), program=program, encoding="latin-1", **strict)[0] == 0

@@ -47,15 +47,6 @@ def _modules():
 
 
 @cache
-def _by_last():
-    """The modules by the last part of their names."""
-    found = defaultdict(list)
-    for module in _modules():
-        found[module.rpartition(".")[2]].append(module)
-    return found
-
-
-@cache
 def _classes():
     found = defaultdict(list)
     for names in _modules().values():
@@ -81,8 +72,9 @@ def _exists(name):
         return _has("course", rest)
     if first in _classes() and first[:1].isupper():
         return not rest or any(rest[0] in _bound(node) for node in _classes()[first])
-    if first in _by_last() and first != OF_SCENES:
-        return any(_has(module, rest) for module in _by_last()[first])
+    named = [module for module in _modules() if module.endswith(f".{first}")]
+    if named and first != OF_SCENES:
+        return any(_has(module, rest) for module in named)
     if first in sys.stdlib_module_names or first == "pytest":
         return hasattr(importlib.import_module(first), rest[0])
     # ``system.params()`` is an expression on some value; ``merged.Class`` was a name of the program.

@@ -22,24 +22,6 @@ from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
 
-#: Everything at the top level that building may look at; the build must choose from it by itself.
-COPIED = (
-    ".gitignore",
-    "pyproject.toml",
-    "hatch_build.py",
-    "README.md",
-    "LICENSE",
-    "CHANGELOG.md",
-    "CONTRIBUTING.md",
-    "course",
-    "docs",
-    "exercises",
-    "quiz",
-    "solutions",
-    "tests",
-    ".ci",
-)
-
 #: Files that are there and must not be in any archive.
 TRAPS = (
     "solutions/integrators/trap.py",
@@ -83,16 +65,9 @@ FORBIDDEN = {
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory):
-    """A copy of the repository with the traps laid."""
-    folder = tmp_path_factory.mktemp("source") / "repo"
-    folder.mkdir()
-    ignore = shutil.ignore_patterns("__pycache__", ".*_cache", ".hypothesis")
-    for name in COPIED:
-        path = ROOT / name
-        if path.is_dir():
-            shutil.copytree(path, folder / name, ignore=ignore)
-        elif path.exists():
-            shutil.copy(path, folder / name)
+    """A copy of the repository with the traps laid: the build must choose from all of it by itself."""
+    ignore = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache", ".hypothesis")
+    folder = shutil.copytree(ROOT, tmp_path_factory.mktemp("source") / "repo", ignore=ignore)
     for trap in (*TRAPS, *PLANTED):
         (folder / trap).parent.mkdir(parents=True, exist_ok=True)
         (folder / trap).write_text("trap = 1\n")
@@ -295,13 +270,11 @@ def _pinned():
 
 def test_what_ci_installs_is_pinned_and_is_what_the_course_asks_for():
     pinned = _pinned()
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+    project = pyproject["project"]
     (extras,) = re.findall(r"-e '\.\[([a-z,]+)\]'", (ROOT / ".ci" / "run").read_text("utf-8"))
     assert f"[{extras}]" in (ROOT / ".ci" / "pin").read_text("utf-8")
-    wanted = [
-        *project["dependencies"],
-        *tomllib.loads((ROOT / "pyproject.toml").read_text())["build-system"]["requires"],
-    ]
+    wanted = [*project["dependencies"], *pyproject["build-system"]["requires"]]
     for extra in extras.split(","):
         wanted += project["optional-dependencies"][extra]
     here = {"python_version": "3.11", "sys_platform": "linux", "platform_machine": "x86_64"}

@@ -6,6 +6,7 @@ commands run in the tests' own process; the parts of a journey that come in turn
 a process, and every part is tried.
 """
 
+import json
 import os
 import subprocess
 import sys
@@ -14,11 +15,14 @@ import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.catalog.models import Exercise
+from course.notebooks.build import exercise_cells
+from course.notebooks.cells import document
 from tests.command_line import in_process
 
 T = TypeVar("T")
@@ -32,6 +36,18 @@ _KEPT = ("PATH", "LANG", "TMPDIR", "SSL_CERT_FILE", "COURSE_REQUIRE_LEVEL")
 def model(exercise: Exercise) -> str:
     """The model solution of an exercise."""
     return (ROOT / "solutions" / exercise.place / exercise.module).read_text("utf-8")
+
+
+def notebook(exercise: Exercise) -> bytes:
+    """The exercise's notebook, with the solution in its cells."""
+    cells = exercise_cells(exercise, model(exercise))
+    return document(cells, kind="exercise", id=exercise.id, version=Catalog().version)
+
+
+def results(out: Path) -> dict[tuple[str, str], dict[str, Any]]:
+    """What a grading run found, by student and exercise."""
+    lines = map(json.loads, (out / "results.jsonl").read_text("utf-8").splitlines())
+    return {(line["student"], line["exercise"]): line for line in lines}
 
 
 def in_turn(cases: Sequence[T], each: int = 1) -> list[T]:

@@ -25,22 +25,30 @@ def below(pid: int) -> dict[int, tuple[int, str]]:
     return found
 
 
-def left_running(marker: object, patience_s: float = 30.0) -> list[str]:
-    """Command lines of other processes with ``marker`` in theirs or in their environment.
+def marked(marker: object) -> dict[int, str]:
+    """Other processes with ``marker`` in their command line or in their environment: id -> command line."""
+    found = {}
+    for entry in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            line, environment = (entry / "cmdline").read_bytes(), (entry / "environ").read_bytes()
+            if str(marker).encode() in environment + line and int(entry.name) != os.getpid():
+                found[int(entry.name)] = line.decode("utf-8", "replace")
+    return found
 
-    They are given ``patience_s`` wall seconds to end by themselves; those that do not are what is returned.
-    """
+
+def left_running(marker: object, patience_s: float = 30.0) -> list[str]:
+    """Command lines of the processes with this marker that do not end by themselves within ``patience_s``."""
     deadline = time.monotonic() + patience_s
-    while True:
-        left = []
-        for entry in Path("/proc").glob("[0-9]*"):
-            with contextlib.suppress(OSError):
-                known = (entry / "environ").read_bytes() + (entry / "cmdline").read_bytes()
-                if str(marker).encode() in known and int(entry.name) != os.getpid():
-                    left.append((entry / "cmdline").read_text("utf-8", "replace"))
-        if not left or time.monotonic() > deadline:
-            return left
+    while (left := marked(marker)) and time.monotonic() < deadline:
         time.sleep(0.2)
+    return list(left.values())
+
+
+def resident(pid: int) -> int:
+    """Bytes of memory that a process has in use; none, once it has ended."""
+    with contextlib.suppress(OSError, IndexError):
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    return 0
 
 
 def stored(folder: Path) -> int:

@@ -8,11 +8,10 @@ counts.
 import json
 
 import pytest
+from nbformat.v4 import new_code_cell
 
 from course.catalog.load import Catalog
-from course.notebooks.build import exercise_cells
-from course.notebooks.cells import document
-from tests.journeys.conftest import model
+from tests.journeys.conftest import model, notebook, results
 from tests.journeys.test_notebook import public
 
 CATALOG = Catalog()
@@ -87,20 +86,16 @@ def in_a_file(exercise, left, place):
 
 def in_a_notebook(exercise, left, place):
     """The model's notebook with a cell more, or with these lines at the end of a function's cell."""
-    made = document(
-        exercise_cells(exercise, model(exercise)), kind="exercise", id=exercise.id, version=CATALOG.version
-    )
-    notebook = json.loads(made)
-    roles = [cell["metadata"].get("course", {}).get("role") for cell in notebook["cells"]]
+    made = json.loads(notebook(exercise))
+    roles = [cell["metadata"].get("course", {}).get("role") for cell in made["cells"]]
     first = roles.index("solution")
     if place == "between":
-        cell = notebook["cells"][first]
+        cell = made["cells"][first]
         cell["source"] = f"{''.join(cell['source'])}\n\n{left}"
     else:
         at = first if place == "above" else len(roles)
-        extra = {"cell_type": "code", "source": left, "metadata": {}, "outputs": [], "execution_count": None}
-        notebook["cells"].insert(at, {**extra, "id": "left-in-it"})
-    return json.dumps(notebook).encode()
+        made["cells"].insert(at, new_code_cell(left, id="left-in-it"))
+    return json.dumps(made).encode()
 
 
 @pytest.mark.soak
@@ -128,9 +123,7 @@ def test_what_submit_says_is_what_the_run_says(student, instructor, tmp_path):
         for file in reply["files"]:
             said[name, file["path"].partition("/")[0]] = (file["last_score"], file["max_score"])
     instructor("grade", "run", tmp_path / "class", "--out", tmp_path / "out", "-j", "2", code=None)
-    lines = map(json.loads, (tmp_path / "out" / "results.jsonl").read_text("utf-8").splitlines())
-    found = {(line["student"], line["exercise"]): line for line in lines}
-    full = 0
+    found, full = results(tmp_path / "out"), 0
     for about, (score, most) in said.items():
         full += score == most
         given = public(found[about]) if found[about]["checks"] else (0.0, most)

@@ -10,7 +10,7 @@ from itertools import count
 import pytest
 
 from course.catalog.reading import BLANK
-from tests.journeys.conftest import ROOT, Way
+from tests.journeys.conftest import ROOT, Way, results
 from tests.unit.authoring.test_scaffold import fill as fill_tripling
 
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
@@ -91,8 +91,8 @@ def test_a_new_exercise_is_proved_and_a_class_is_graded_with_it(author, mini, tm
         (tmp_path / "class" / student / "tripling").mkdir(parents=True)
         shutil.copy(source / "tripling" / "tripling.py", tmp_path / "class" / student / "tripling")
     author("grade", "run", "class", "--out", "out", "--seed", "7", "--exercise", "tripling")
-    lines = map(json.loads, (tmp_path / "out" / "results.jsonl").read_text("utf-8").splitlines())
-    grades = {line["student"]: (line["state"], line["score"], line["max_score"]) for line in lines}
+    found = results(tmp_path / "out").values()
+    grades = {line["student"]: (line["state"], line["score"], line["max_score"]) for line in found}
     assert grades == {"ada": ("graded", 12, 12), "bea": ("graded", 0, 12)}
 
     # Where a class is graded there are no solutions; the author's own machine has them, and says so.

@@ -15,6 +15,8 @@ from pathlib import Path
 import pytest
 
 from course.catalog.load import Catalog
+from course.errors import MissingCapabilityError
+from course.grading.cluster.connect import DaskWorkers, local_cluster, remote_cluster, start_cluster
 from course.grading.cluster.coordinator import grade_on
 from course.grading.cluster.worker import grade_batch
 from course.grading.gradebook.book import Gradebook
@@ -45,16 +47,38 @@ def dask_workers(parent):
 
 
 @pytest.fixture
-def catalog(monkeypatch):
+def catalog(monkeypatch, tmp_path):
+    """The miniature course, for this process and for all that it starts, which are marked by the folder."""
     monkeypatch.setenv("COURSE_CONTENT", str(MINI))
     path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     monkeypatch.setenv("PYTHONPATH", path)
+    monkeypatch.setenv("MARKER", str(tmp_path))
     return Catalog()
+
+
+@pytest.fixture
+def start(catalog, tmp_path):
+    """Starts programs, each in a session of its own; at the end all are stopped, and nothing is left."""
+    started = []
+
+    def begin(*words, **how):
+        started.append(subprocess.Popen(words, text=True, start_new_session=True, **how))
+        return started[-1]
+
+    yield begin
+    for process in reversed(started):
+        process.terminate()
+    for process in started:
+        try:
+            process.communicate(timeout=20)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+    assert not left_running(tmp_path)
 
 
 def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path, catalog):
     """A death that no grader process can keep from its worker: a machine that runs out of memory."""
-    from course.grading.cluster.connect import DaskWorkers, start_cluster
 
     def deadly(payload):
         import os
@@ -83,30 +107,20 @@ def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path, cat
 
 
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL], ids=["ctrl-c", "kill -9"])
-def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(tmp_path, catalog, sign):
+def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(tmp_path, start, sign):
     """Ctrl-C reaches every process of the terminal, the workers too; kill -9 the coordinator alone."""
     students = 120
     make_class(tmp_path / "class", students)
-    environment = {**os.environ, "MARKER": str(tmp_path)}
     out = tmp_path / "out"
     how = ("--local-cluster", 2, "--seed", 9, "--plain", "--isolation", "process")
     run = command(tmp_path / "class", "--out", out, *how)
-    with subprocess.Popen(
-        run,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    ) as process:
-        first = process.stdout.readline()
-        assert "student-" in first
-        if sign is signal.SIGINT:
-            os.killpg(process.pid, sign)
-        else:
-            process.kill()
-        words = process.stderr.read()
-        process.stdout.read()
+    process = start(*run, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert "student-" in process.stdout.readline()
+    if sign is signal.SIGINT:
+        os.killpg(process.pid, sign)
+    else:
+        process.kill()
+    _, words = process.communicate()
     assert process.returncode == (130 if sign is signal.SIGINT else -sign)
     assert not left_running(tmp_path)
     done = len(scores(out))
@@ -118,7 +132,7 @@ def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(tmp_path, catal
         said = f"Interrupted: all of the work of {whole} of {students} students is graded. What is graded is "
         said += "kept, and the rest is not graded yet. The same command with --resume goes on."
         assert words.split() == said.split()
-    again = subprocess.run([*run, "--resume"], env=environment, capture_output=True, text=True, check=False)
+    again = subprocess.run([*run, "--resume"], capture_output=True, text=True, check=False)
     assert again.returncode == 0, again.stderr
     assert again.stdout.count(f"/{students} student") == students - done
     assert len(scores(out)) == students
@@ -127,8 +141,6 @@ def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(tmp_path, catal
 @pytest.mark.parametrize("kill_at", [-1, 3], ids=["undisturbed", "a worker killed"])
 def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(tmp_path, catalog, monkeypatch, kill_at):
     """Workers that start late, or again, judge by the snapshot too."""
-    from course.grading.cluster.connect import local_cluster
-
     shutil.copytree(MINI, tmp_path / "content")
     monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "content"))
     course = Catalog()
@@ -152,66 +164,36 @@ def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(tmp_path, cata
     judged_by_the_snapshot(out, course, version, summary.graders)
 
 
-@contextlib.contextmanager
-def scheduler_and_worker(environment):
-    """A Dask scheduler and one worker with a nanny, started as an instructor would start them."""
-    started = []
-    try:
-        dask = [sys.executable, "-P", "-m", "distributed.cli.dask_scheduler"]
-        plain = {"env": environment, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
-        scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"], **plain)
-        started.append(scheduler)
-        line = next(line for line in scheduler.stderr if "Scheduler at:" in line)
-        address = line.split()[-1]
-        plain["stderr"] = subprocess.DEVNULL
-        worker = [sys.executable, "-P", "-m", "distributed.cli.dask_worker", address]
-        started.append(subprocess.Popen([*worker, "--nthreads", "2", "--no-dashboard"], **plain))
-        yield address, started
-    finally:
-        stop(started)
+def scheduler_and_worker(start):
+    """A Dask scheduler, its address, and one worker with a nanny, as an instructor would start them."""
+    python = (sys.executable, "-P", "-m")
+    here = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    scheduler = start(*python, "distributed.cli.dask_scheduler", *here, stderr=subprocess.PIPE)
+    address = next(line for line in scheduler.stderr if "Scheduler at:" in line).split()[-1]
+    worker = ("distributed.cli.dask_worker", address, "--nthreads", "2", "--no-dashboard")
+    start(*python, *worker, stderr=subprocess.DEVNULL)
+    return scheduler, address
 
 
-def stop(started):
-    for process in reversed(started):
-        process.terminate()
-    for process in started:
-        try:
-            process.wait(20)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        if process.stderr:
-            process.stderr.close()
-
-
-def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path, catalog):
+def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path, catalog, start):
     make_class(tmp_path / "class", 300)
-    environment = {**os.environ, "MARKER": str(tmp_path)}
-    options = RunOptions(exercises=("doubling",), seed=3)
-    from course.errors import MissingCapabilityError
-    from course.grading.cluster.connect import remote_cluster
+    options, out = RunOptions(exercises=("doubling",), seed=3), tmp_path / "out"
+    scheduler, address = scheduler_and_worker(start)
 
-    with scheduler_and_worker(environment) as (address, (scheduler, _)):
+    def report(*_):
+        if scheduler.poll() is None:
+            scheduler.kill()
+            scheduler.wait()
 
-        def report(*_):
-            if scheduler.poll() is None:
-                scheduler.kill()
-                scheduler.wait()
-
-        with (
-            pytest.raises(MissingCapabilityError, match="scheduler is gone"),
-            remote_cluster(address) as grade,
-        ):
-            grade_class(tmp_path / "class", tmp_path / "out", catalog, options, report, grade=grade)
-    done = len(scores(tmp_path / "out"))
+    gone = pytest.raises(MissingCapabilityError, match="scheduler is gone")
+    with gone, remote_cluster(address) as grade:
+        grade_class(tmp_path / "class", out, catalog, options, report, grade=grade)
+    done = len(scores(out))
     assert 0 < done < 300
-    with scheduler_and_worker(environment) as (address, _), remote_cluster(address) as grade:
-        again = RunOptions(exercises=("doubling",), resume=True)
-        summary = grade_class(
-            tmp_path / "class", tmp_path / "out", catalog, again, lambda *_: None, grade=grade
-        )
+    again = RunOptions(exercises=("doubling",), resume=True)
+    with remote_cluster(scheduler_and_worker(start)[1]) as grade:
+        summary = grade_class(tmp_path / "class", out, catalog, again, lambda *_: None, grade=grade)
     assert (summary.already, summary.states["graded"]) == (done, 300)
-    assert not left_running(tmp_path)
 
 
 def commands_of_the_page(port):
@@ -231,46 +213,35 @@ def commands_of_the_page(port):
 
 
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl is not installed")
-def test_the_page_for_two_machines_works_as_written(tmp_path):
+def test_the_page_for_two_machines_works_as_written(tmp_path, start, monkeypatch):
     """A setting left out first: one sentence, no folder left behind; the corrected command is the same."""
     with socket.create_server(("127.0.0.1", 0)) as sock:
         port = sock.getsockname()[1]
     certificates, *daemons, grading = commands_of_the_page(port)
     alpha, beta = tmp_path / "alpha", tmp_path / "beta"
     make_class(alpha / "submissions", 12)
-    environment = {
-        **os.environ, "MARKER": str(tmp_path), "COURSE_CONTENT": str(MINI), "PYTHONPATH": str(ROOT),
-        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
-    }  # fmt: skip
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
 
     def pasted(script):
-        return subprocess.run(
-            ["sh", "-c", script], check=False, cwd=alpha, env=environment, capture_output=True, text=True
-        )
+        return subprocess.run(["sh", "-c", script], check=False, cwd=alpha, capture_output=True, text=True)
 
     assert pasted(f"set -e\n{certificates}").returncode == 0
     beta.mkdir()
     for name in ("ca.pem", "machines.pem", "machines.key"):
         shutil.copy(alpha / name, beta)
-    started = []
-    try:
-        for folder, block in zip((alpha, alpha, beta), daemons, strict=True):
-            how = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-            words = shlex.split(block.replace("\\\n", " "))
-            started.append(
-                subprocess.Popen(words, cwd=folder, env=environment, text=True, start_new_session=True, **how)
-            )
-        until_listening(port, started[0])
-        wrong = pasted(grading.replace("CLIENT__KEY", "CLIENT__NONE"))
-        assert (wrong.returncode, wrong.stderr.count("\n")) == (4, 2)
-        assert "needs the key of that certificate" in wrong.stderr
-        assert not (alpha / "grades").exists()
-        right = pasted(grading)
-        assert right.returncode == 0, right.stderr
-    finally:
-        stop(started)
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    scheduler, *_ = [
+        start(*shlex.split(block.replace("\\\n", " ")), cwd=folder, **quiet)
+        for folder, block in zip((alpha, alpha, beta), daemons, strict=True)
+    ]
+    until_listening(port, scheduler)
+    wrong = pasted(grading.replace("CLIENT__KEY", "CLIENT__NONE"))
+    assert (wrong.returncode, wrong.stderr.count("\n")) == (4, 2)
+    assert "needs the key of that certificate" in wrong.stderr
+    assert not (alpha / "grades").exists()
+    right = pasted(grading)
+    assert right.returncode == 0, right.stderr
     assert len(scores(alpha / "grades")) == 12
-    assert not left_running(tmp_path)
 
 
 def until_listening(port, server):

@@ -7,21 +7,19 @@ file of tests/attacks is handed in at least once. A smaller class gets as many o
 from all over the corpus. What was measured is printed.
 """
 
-import contextlib
-import json
 import os
 import statistics
 import subprocess
 import sys
 import time
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.contracts.boundary.levels import require_level
-from tests.journeys.processes import below, left_running, stored
+from tests.journeys.conftest import results
+from tests.journeys.processes import below, left_running, resident, stored
 from tests.journeys.test_class_resume import ROOT, command, environment
 from tests.unit.grading.made import NEEDS_CLUSTER
 
@@ -67,9 +65,8 @@ class Watched:
     def quarters(self):
         """Bytes of memory in the second quarter of the run, and in the last."""
         quarter = max(1, len(self.memory) // 4)
-        return statistics.median(self.memory[quarter : 2 * quarter]), statistics.median(
-            self.memory[-quarter:]
-        )
+        second, last = self.memory[quarter : 2 * quarter], self.memory[-quarter:]
+        return statistics.median(second), statistics.median(last)
 
     def scores(self):
         """What each honest student got, check by check."""
@@ -106,13 +103,10 @@ def make_class(folder, size, *, hostile):
             (place / MODULE).write_bytes(source + b"\n# %d\n" % number)
 
 
-def resident(pid):
+def trusted(pid):
     """Bytes that a process and the trusted ones below it hold; workers have a limit of their own."""
-    total = 0
-    for child in (pid, *(child for child, (_, line) in below(pid).items() if "course_worker" not in line)):
-        with contextlib.suppress(OSError, IndexError):
-            total += int(Path(f"/proc/{child}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    return total
+    below_it = (child for child, (_, line) in below(pid).items() if "course_worker" not in line)
+    return sum(map(resident, (pid, *below_it)))
 
 
 def grade(folder, out, *options):
@@ -125,14 +119,13 @@ def grade(folder, out, *options):
         run = subprocess.Popen(line, env=settings, stdout=printed, stderr=printed)
         memory, temporary = [], []
         while run.poll() is None:
-            memory.append(resident(run.pid))
+            memory.append(trusted(run.pid))
             temporary.append(stored(scratch))
             time.sleep(0.5)
-    lines = (out / "results.jsonl").read_text("utf-8").splitlines()
-    results = {line["student"]: line for line in map(json.loads, lines)}
+    found = {student: line for (student, _), line in results(out).items()}
     assert not list(scratch.iterdir()), "a run leaves no temporary file behind"
     assert not left_running(out.parent), "a run leaves no process behind"
-    return Watched(run.returncode, results, time.monotonic() - start, memory, temporary)
+    return Watched(run.returncode, found, time.monotonic() - start, memory, temporary)
 
 
 def tell(name, run):
@@ -145,38 +138,28 @@ def tell(name, run):
     )
 
 
-def compare(tmp_path, size, *options):
-    """Grade the honest alone and then among the hostile, and hold the one against the other."""
-    make_class(tmp_path / "honest", size, hostile=False)
-    make_class(tmp_path / "class", size, hostile=True)
-    alone = grade(tmp_path / "honest", tmp_path / "alone", *options)
+@pytest.mark.parametrize("graders", ["-j", pytest.param("--local-cluster", marks=NEEDS_CLUSTER)])
+def test_the_honest_get_what_they_would_have_got_without_the_hostile(tmp_path, graders):
+    require_level("L3")
+    make_class(tmp_path / "honest", SIZE, hostile=False)
+    make_class(tmp_path / "class", SIZE, hostile=True)
+    alone = grade(tmp_path / "honest", tmp_path / "alone", graders, "2")
     tell("honest alone", alone)
-    among = grade(tmp_path / "class", tmp_path / "among", *options)
+    among = grade(tmp_path / "class", tmp_path / "among", graders, "2")
     tell("among the hostile", among)
 
     assert alone.code == 0
     ungradable = [name for name, line in among.results.items() if line["state"] == "ungradable"]
     assert among.code == (6 if ungradable else 0)
-    assert ungradable or size < len(hostile_files()), "a larger class has one that cannot be graded"
+    assert ungradable or len(hostile_files()) > SIZE, "a larger class has one that cannot be graded"
     assert among.results.keys() == {place.name for place in (tmp_path / "class").iterdir()}
-    assert len(alone.scores()) == size // 5 * 4
+    assert len(alone.scores()) == SIZE // 5 * 4
     assert among.scores() == alone.scores()
     assert len({line["score"] for name, line in alone.results.items()}) > 1, "honest scores that differ"
     for name, line in among.results.items():
         assert line["state"] != "grader_error", name
         assert "honest" in name or line["score"] <= 2, f"{name} is worth two points"
-    if size >= FILLED:
+    if SIZE >= FILLED:
         early, late = among.quarters()
         assert late <= GROWTH * early
     assert max(among.temporary) <= TEMPORARY
-
-
-def test_the_honest_get_what_they_would_have_got_without_the_hostile(tmp_path):
-    require_level("L3")
-    compare(tmp_path, SIZE, "-j", "2")
-
-
-@NEEDS_CLUSTER
-def test_so_they_do_on_a_cluster_of_two(tmp_path):
-    require_level("L3")
-    compare(tmp_path, SIZE, "--local-cluster", "2")

@@ -18,9 +18,7 @@ from packaging.requirements import Requirement
 
 from course.authoring.exercises.grading import mistakes_of
 from course.catalog.load import Catalog
-from course.notebooks.build import exercise_cells
-from course.notebooks.cells import document
-from tests.journeys.conftest import ALL, ROOT, Way, in_turn, model
+from tests.journeys.conftest import ALL, ROOT, Way, in_turn, model, notebook, results
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()
@@ -57,16 +55,10 @@ def broken(exercise):
     return model(exercise).replace(f"def {name}(", f"def {name}((", 1) + "\nprint(nothing_of_this_name)\n"
 
 
-def notebook(exercise):
-    """The exercise's notebook, with the solution in its cells."""
-    cells = exercise_cells(exercise, model(exercise))
-    return document(cells, kind="exercise", id=exercise.id, version=CATALOG.version)
-
-
 #: Each student: what becomes of each exercise, and the file that is handed in for it.
 KINDS = {
     "ada": (RIGHT, lambda one: (one.module, model(one))),
-    "bea": (RIGHT, lambda one: (one.module.replace(".py", ".ipynb"), notebook(one))),
+    "bea": (RIGHT, lambda one: (one.module.replace(".py", ".ipynb"), notebook(one).decode())),
     "cyd": (LESS, lambda one: (one.module, wrong(one))),
     "dan": (MISSING, lambda _: None),
     "eve": (RIGHT, lambda one: (one.module, model(one) + HOSTILE)),
@@ -127,7 +119,7 @@ def handed_in(zipped, tmp_path_factory):
             place.mkdir(parents=True)
             if work is not None:
                 name, content = work
-                (place / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+                (place / name).write_text(content, "utf-8")
     (folder / "class" / "kim").mkdir()
     shutil.copy(zipped, folder / "class" / "kim")
     for exercise in copied_by_lou():
@@ -141,27 +133,26 @@ def handed_in(zipped, tmp_path_factory):
 
 
 def run(instructor, handed_in, out, *how):
-    """The lines of results, by student and exercise."""
+    """What a run over the class finds, by student and exercise."""
     instructor(
         "grade", "run", handed_in / "class", "--out", out, "--seed", "7", "--roster",
         handed_in / "roster.csv", *how, code=6,
     )  # fmt: skip
-    lines = map(json.loads, (out / "results.jsonl").read_text("utf-8").splitlines())
-    return {(line["student"], line["exercise"]): line for line in lines}
+    return results(out)
 
 
-def scores(results):
-    return {about: (line["state"], line["score"]) for about, line in results.items()}
+def scores(found):
+    return {about: (line["state"], line["score"]) for about, line in found.items()}
 
 
 def test_a_term(instructor, handed_in, tmp_path):
     """Every command of `grade` on one class, in the order in which a term needs them."""
     out = tmp_path / "out"
-    results = run(instructor, handed_in, out, "-j", "1")
-    as_each_deserves(results)
+    found = run(instructor, handed_in, out, "-j", "1")
+    as_each_deserves(found)
     ways = [("-j", "2"), ("--local-cluster", "2")] if ALL else []
     for number, way in enumerate(ways):
-        assert scores(run(instructor, handed_in, tmp_path / f"way{number}", *way)) == scores(results), way
+        assert scores(run(instructor, handed_in, tmp_path / f"way{number}", *way)) == scores(found), way
 
     first = EXERCISES[0].id
     assert "100 of 100, passed" in instructor("grade", "explain", out, "ada", first).stdout
@@ -201,13 +192,13 @@ def test_a_term(instructor, handed_in, tmp_path):
     salvaged(instructor, out, tmp_path)
 
 
-def as_each_deserves(results):
+def as_each_deserves(found):
     assert EXERCISES
     for exercise in EXERCISES:
         for student, (kind, _) in KINDS.items():
             if exercise not in hands_in_for(student):
                 continue
-            line = results[student, exercise.id]
+            line = found[student, exercise.id]
             told = (student, exercise.id, line["state"], line["score"], line["error"])
             if kind == RIGHT:
                 assert (line["state"], line["score"]) == ("graded", line["max_score"]), told
@@ -218,17 +209,17 @@ def as_each_deserves(results):
                 assert (line["state"], line["score"]) == ("missing", None), told
             else:
                 assert (line["state"], line["score"]) == ("ungradable", 0.0), told
-        assert results["kim", exercise.id]["score"] == exercise.max_points
+        assert found["kim", exercise.id]["score"] == exercise.max_points
         if exercise in copied_by_lou():
-            assert results["lou", exercise.id]["score"] == exercise.max_points
+            assert found["lou", exercise.id]["score"] == exercise.max_points
         if exercise not in hands_in_for("fay"):
             continue
         # One broken function and one line cost that function: its checks say why, a note tells of the line.
-        lost = {check["task"] for check in results["fay", exercise.id]["checks"] if check["points"] == 0}
+        lost = {check["task"] for check in found["fay", exercise.id]["checks"] if check["points"] == 0}
         assert exercise.task[0].id in lost
-        assert results["fay", exercise.id]["warnings"]
-    assert results["kim", "quiz"]["state"] == "graded"
-    assert {line["isolation"] for line in results.values() if line["isolation"]} == {"L3"}
+        assert found["fay", exercise.id]["warnings"]
+    assert found["kim", "quiz"]["state"] == "graded"
+    assert {line["isolation"] for line in found.values() if line["isolation"]} == {"L3"}
 
 
 def exported(instructor, handed_in, out):
@@ -300,16 +291,16 @@ def test_the_container_of_an_exercise_scores_as_the_run(instructor, tmp_path, ex
         if kind not in {RIGHT, LESS} or not (ALL or student in OFTEN):
             continue
         name, content = hands_in(exercise)
-        submission, results = tmp_path / student, tmp_path / f"{student}.json"
+        submission, written = tmp_path / student, tmp_path / f"{student}.json"
         submission.mkdir()
-        (submission / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        (submission / name).write_text(content, "utf-8")
         done = subprocess.run(
-            [sys.executable, "-P", "-m", module, submission, results, source / "config.json"],
+            [sys.executable, "-P", "-m", module, submission, written, source / "config.json"],
             env={"PATH": os.environ["PATH"], "PYTHONPATH": f"{source}:{tmp_path / 'deny'}"},
             cwd="/", capture_output=True, text=True, check=False,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
-        body = json.loads(results.read_bytes())
+        body = json.loads(written.read_bytes())
         lost = [(test["number"], test["output"]) for test in body["tests"] if test["status"] != "passed"]
         assert (body["score"] == exercise.max_points) == (kind == RIGHT), (student, lost, done.stdout)
 

@@ -11,10 +11,11 @@ import time
 from importlib.util import find_spec
 
 import pytest
+from nbformat.v4 import new_code_cell
 
 from course.catalog.load import Catalog
 from course.notebooks.build import pieces
-from tests.journeys.conftest import in_turn, model
+from tests.journeys.conftest import in_turn, model, results
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()
@@ -53,8 +54,7 @@ def graded(instructor, workspace):
     (place / "mine.zip").write_bytes((workspace / "physics-sim-submission.zip").read_bytes())
     out = workspace.parent / f"out-{time.monotonic_ns()}"
     instructor("grade", "run", place.parent, "--out", out, "-j", "2")
-    lines = map(json.loads, (out / "results.jsonl").read_text("utf-8").splitlines())
-    return {line["exercise"]: line for line in lines}
+    return {exercise: line for (_, exercise), line in results(out).items()}
 
 
 def public(line):
@@ -169,18 +169,8 @@ def of_task(cells, task):
     )
 
 
-def code(text, cell):
-    return {
-        "cell_type": "code",
-        "id": cell,
-        "metadata": {},
-        "source": text,
-        "outputs": [],
-        "execution_count": None,
-    }
-
-
 OLD = "def rk4_step(accel, t, q, v, h):\n    return q + h * v, v"
+HALF = "def half(h):\n    return h / 2"
 CHECK = "%course_check integrators"
 
 
@@ -197,24 +187,19 @@ def test_what_the_kernel_has_run_besides_changes_nothing(kernel, student, instru
     assert "40 of 40 points" in kernel.run(CHECK)
 
     # Run, used, and deleted from the notebook.
-    kernel.run("def half(h):\n    return h / 2", "helper")
-    edit(
-        kernel.path,
-        lambda cells: of_task(cells, "rk4_step").update(
-            source="".join(of_task(cells, "rk4_step")["source"]).replace("h / 2", "half(h)")
-        ),
-    )
-    kernel.run(
-        "".join(of_task(kernel.cells(), "rk4_step")["source"]), of_task(kernel.cells(), "rk4_step")["id"]
-    )
+    kernel.run(HALF, "helper")
+    cell = of_task(kernel.cells(), "rk4_step")
+    source = "".join(cell["source"]).replace("h / 2", "half(h)")
+    edit(kernel.path, lambda cells: of_task(cells, "rk4_step").update(source=source))
+    kernel.run(source, cell["id"])
     said = kernel.run(CHECK)
     assert "name 'half' is not defined" in said
     assert "40 of 40 points" not in said
 
     # And an old wrong copy, below, that was run long ago.
-    edit(kernel.path, lambda cells: cells.insert(5, code("def half(h):\n    return h / 2", "helper")))
+    edit(kernel.path, lambda cells: cells.insert(5, new_code_cell(HALF, id="helper")))
     assert "40 of 40 points" in kernel.run(CHECK)
-    edit(kernel.path, lambda cells: cells.append(code(OLD, "old")))
+    edit(kernel.path, lambda cells: cells.append(new_code_cell(OLD, id="old")))
     said = kernel.run(CHECK)
     assert "`rk4_step` is defined more than once" in said
     assert "40 of 40 points" not in said

@@ -4,6 +4,7 @@ import json
 from importlib.util import find_spec
 
 import pytest
+from nbformat.v4 import new_code_cell
 
 from course.authoring.lessons.cells import as_written
 from course.catalog import blocks as b
@@ -33,8 +34,7 @@ def ran(kind, name, more=""):
     (one,) = [made for made in generate(CATALOG, [name]) if made.kind == kind]
     notebook = json.loads(one.data)
     for place, text in ((0, OFFLINE), (len(notebook["cells"]) + 1, more)):
-        extra = {"cell_type": "code", "id": f"extra-{place}", "metadata": {}, "source": text}
-        notebook["cells"].insert(place, extra | {"outputs": [], "execution_count": None})
+        notebook["cells"].insert(place, new_code_cell(text, id=f"extra-{place}"))
     return json.loads(executed(json.dumps(notebook).encode(), str(one.path)))["cells"]
 
 

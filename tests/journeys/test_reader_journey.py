@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -130,29 +131,22 @@ class Student:
 
         A key that comes while a busy machine lays the page out anew can be lost: a student presses it again.
         """
-        began = looked = time.monotonic()
-        while time.monotonic() < began + 40.0:
-            if time.monotonic() > looked + 10.0:
-                looked = time.monotonic()
+        press = time.monotonic() + 10.0
+
+        def began(screen):
+            nonlocal press
+            if time.monotonic() > press:
+                press += 10.0
                 again()
-            screen = self.terminal.screen()
-            if "Checking" in screen or "checked already" in screen:
-                return screen
-            if len(self.workspace.store.events("check", name)) >= times:
-                return screen
-            time.sleep(0.1)
-        pytest.fail(f"Check {times} of {name} did not begin on:\n{self.terminal.screen()}")
+            seen = "Checking" in screen or "checked already" in screen
+            return seen or len(self.workspace.store.events("check", name)) >= times
+
+        return self.terminal.until(began)
 
     def checked(self, name, times):
         """Wait until the record has a check and the screen its answer."""
-        until = time.monotonic() + 60.0
-        while len(self.workspace.store.events("check", name)) < times or "Checking" in self.terminal.screen():
-            assert time.monotonic() < until, (
-                times,
-                self.workspace.store.events("check", name),
-                self.terminal.screen(),
-            )
-            time.sleep(0.1)
+        checks = partial(self.workspace.store.events, "check", name)
+        self.terminal.until(lambda screen: len(checks()) >= times and "Checking" not in screen, 60.0)
 
 
 def test_a_lesson_is_read_and_done_from_its_title_to_its_last_line(terminal, workspace):
@@ -270,16 +264,16 @@ def test_ctrl_c_anywhere_leaves_the_terminal_as_it_was_and_keeps_the_place(termi
     where = terminal.still().splitlines()[0]
     for key in keys:
         terminal.keys(key)
-    if shows:
-        until = time.monotonic() + 20.0
-        while shows not in terminal.screen().lower() and time.monotonic() < until:
-            time.sleep(0.1)
+    terminal.until(lambda screen: shows in screen.lower(), 20.0)
+
+    def left(screen):
+        if not (over := any(words in screen for words in NEXT)):
+            terminal.keys("C-c")
+            time.sleep(0.5)
+        return over
+
     # A box, or a cell that runs, takes the first one and those that come before it is gone; then the reader.
-    until = time.monotonic() + 40.0
-    while not any(words in (screen := terminal.screen()) for words in NEXT):
-        assert time.monotonic() < until, screen
-        terminal.keys("C-c")
-        time.sleep(0.5)
+    terminal.until(left)
     assert terminal.state() == AS_IT_WAS
     again = opened(terminal)
     if keys[:1] != ("Space",):

@@ -18,7 +18,7 @@ import pytest
 
 from course.sandbox.runs.tape import HEAD
 from course.sandbox.scene.loading import scene_ids
-from tests.browsers import CHROMIUM, FLAGS, axe_core
+from tests.browsers import CHROMIUM, FLAGS, axe_core, on_the_page
 
 pytestmark = [
     pytest.mark.soak,
@@ -157,13 +157,7 @@ class Sandbox:
 
     def pixel(self, x, y):
         """Where a place of the world is on the page."""
-        box = self.page.locator("canvas.world").bounding_box()
-        left, bottom, right, top = self.view
-        scale = min(box["width"] / (right - left), box["height"] / (top - bottom))
-        return (
-            box["x"] + box["width"] / 2 + (x - (left + right) / 2) * scale,
-            box["y"] + box["height"] / 2 - (y - (bottom + top) / 2) * scale,
-        )
+        return on_the_page(self.page.locator("canvas.world"), self.view, x, y)
 
     def close(self):
         self.page.close()

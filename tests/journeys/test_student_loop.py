@@ -1,45 +1,35 @@
 """An exercise worked on behind a link, and by two commands at once, with the real sandbox."""
 
 import json
-import os
 import shutil
 import signal
 import subprocess
-import sys
-from pathlib import Path
+from dataclasses import replace
 
 import pytest
 
-from tests.command_line import in_process
+from tests.journeys.conftest import ROOT
 
 pytestmark = pytest.mark.usefixtures("sandboxes")
-ROOT = Path(__file__).resolve().parents[2]
 MINI_COURSE = ROOT / "tests" / "fixtures" / "mini_course"
 HALF = "def double(x):\n    return x + x\n\n\ndef doublings(x, n):\n    return [x]\n"
 RIGHT = HALF.replace("[x]", "[x * 2**k for k in range(n + 1)]")
 
 
 @pytest.fixture
-def course(tmp_path):
-    """Run a command line on the miniature course as a student has it: no solutions, no graders."""
+def course(instructor, tmp_path):
+    """Commands on the miniature course as a student has it: no solutions, no graders."""
     for name in ("exercises", "lessons"):
         shutil.copytree(MINI_COURSE / name, tmp_path / "content" / name)
-    ours = {"PYTHONPATH": str(ROOT), "COURSE_CONTENT": str(tmp_path / "content"), "PYTHONUTF8": "1"}
-
-    def run(*words, cwd=tmp_path):
-        ran = in_process(*words, cwd=cwd, env=run.environ)
-        assert "Traceback (most recent call last)" not in ran.stdout + ran.stderr
-        return ran
-
-    run.environ = os.environ | ours
-    return run
+    content = {"COURSE_CONTENT": str(tmp_path / "content")}
+    return replace(instructor, environment=instructor.environment | content)
 
 
 @pytest.fixture
 def workspace(course, tmp_path):
     root = tmp_path / "my work é"
-    assert course("init", str(root)).returncode == 0
-    assert course("start", "doubling", cwd=root).returncode == 0
+    course("init", root)
+    course("start", "doubling", cwd=root)
     return root
 
 
@@ -47,56 +37,37 @@ def test_a_workspace_behind_a_link_works(course, workspace, tmp_path):
     link = tmp_path / "link"
     link.symlink_to(workspace, target_is_directory=True)
     (link / "doubling" / "doubling.py").write_text(RIGHT)
-    assert course("check", cwd=link / "doubling").returncode == 0
-    assert course("-C", str(link), "submit").returncode == 0
+    course("check", cwd=link / "doubling")
+    course("-C", link, "submit")
 
 
 def test_a_check_while_a_watch_runs_loses_nothing(course, workspace):
     module = workspace / "doubling" / "doubling.py"
-    with _watch(course, workspace) as watch:
+    watch = subprocess.Popen(
+        [*course.command, "watch", "doubling", "--json"],
+        cwd=workspace,
+        env=course.environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+    )
+    with watch:
+        said_in_time(watch, "Score")  # it is warm
         for number in range(3):
             module.write_text(RIGHT + f"# {number}\n" + f"a{number} = 1\n")
-            assert course("check", cwd=workspace).returncode == 0
+            course("check", cwd=workspace)
         module.write_text(HALF)
-        watch.wait_for("Score 2")  # interrupted before that, it may have recorded a run that it has not told
-        runs = watch.stop()["runs"]
+        said_in_time(watch, "Score 2")  # interrupted before, it may have recorded a run that it has not told
+        watch.send_signal(signal.SIGINT)
+        runs = json.loads(watch.communicate(timeout=30)[0])["runs"]
     body = json.loads(course("progress", "--json", cwd=workspace).stdout)
     assert body["exercises"][0]["checks_run"] == len(runs) + 3
 
 
-class _watch:  # noqa: N801 - a context manager, used like a function
-    """A watch of ``doubling``, warm before it is handed over."""
-
-    def __init__(self, course, workspace):
-        self.process = subprocess.Popen(
-            [sys.executable, "-u", "-m", "course", "watch", "doubling", "--json"],
-            cwd=workspace,
-            env=course.environ,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-        )
-        self.wait_for("Score")
-
-    def wait_for(self, words):
-        """Read what it says until a line begins with ``words``."""
-        for line in self.process.stderr:
-            assert "Traceback" not in line
-            if line.startswith(words):
-                return
-        raise AssertionError(f"the watch ended without saying {words!r}")
-
-    def stop(self):
-        """Interrupt it and return its one object."""
-        self.process.send_signal(signal.SIGINT)
-        out, _ = self.process.communicate(timeout=30)
-        return json.loads(out)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.communicate()
+def said_in_time(watch, words):
+    """Read what a watch says until a line begins with ``words``."""
+    for line in watch.stderr:
+        assert "Traceback" not in line
+        if line.startswith(words):
+            return
+    pytest.fail(f"the watch ended without saying {words!r}")

@@ -108,16 +108,15 @@ class Log:
         self._path = path
         lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
         self._done = {tuple(key): wrong for *key, wrong in map(json.loads, lines)}
-        self._right: dict[tuple[Any, ...], int] = {}
-        for (*key, seeds), wrong in self._done.items():
-            self._right[*key] = max(self._right.get((*key,), 0), seeds if wrong == 0 else 0)
+        right = (key for key, wrong in self._done.items() if wrong == 0)
+        self._proven = {tuple(key) for *key, seeds in right if seeds >= LEAST}
 
     def done(self, *key: Any) -> int | None:
         return self._done.get(key)
 
     def proves(self, *key: Any) -> bool:
         """Whether a program, by its key but for the number of seeds, was right under ``LEAST`` or more."""
-        return bool(self._right.get(key, 0) >= LEAST)
+        return key in self._proven
 
     def knows(self, exercise: Exercise) -> bool:
         return any(key[0] == exercise.id for key in self._done)

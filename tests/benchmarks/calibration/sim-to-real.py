@@ -12,32 +12,25 @@ room there is between them.
 """
 
 import argparse
-import importlib.util
 import json
 import math
 import sys
 from collections import defaultdict
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT)]
 
+from course.authoring.exercises.grading import compose  # noqa: E402
+from course.scoring import kit  # noqa: E402
 
-def load(path: Path, name: str, given: dict | None = None):
-    """The module at a path, ``given`` what an accepted variant takes from the model solution."""
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = importlib.util.module_from_spec(spec)
-    module.__dict__.update({k: v for k, v in (given or {}).items() if not k.startswith("__")})
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-reference = load(ROOT / "tests/graders/sim-to-real/reference.py", "reference")
-model = load(ROOT / "solutions/sim-to-real/sim_to_real.py", "model")
-judge = load(ROOT / "exercises/sim-to-real/checking/judge.py", "judge")
+SOLUTION = ROOT / "solutions/sim-to-real/sim_to_real.py"
+reference = kit.sibling(str(ROOT / "tests/graders/sim-to-real/checks.py"), "reference")
+model = kit.reference("sim-to-real", SOLUTION.stem)
+judge = kit.companion("sim-to-real", "judge")
 cart, bench = reference.cart, reference.bench
 SCORED = tuple(cart.SCORED)
 
@@ -101,31 +94,20 @@ def of_bench(seed: int, _hard: tuple[float, float]) -> dict:
     bounds = [
         cart.attainable(u, [each])[0, [0, 1, 2, 5]] for (_, u, _), each in zip(recordings, carts, strict=True)
     ]
-    with Quantities() as seen:
+    # The values that the judge compares with bounds, in order; none of them fails.
+    with mock.patch.object(kit, "expect_bounded") as compared:
         judge.expect_growth(full, weak, carts)
         judge.expect_honest_widths(full, recordings, carts)
+    growth, *widths = [float(call.args[0]) for call in compared.call_args_list]
     return {
         "error": np.max([[abs(e[k][0] / t[k] - 1) for k in SCORED] for e, t in pairs], axis=0).tolist(),
         "half": np.max([[(e[k][2] - e[k][1]) / 2 / t[k] for k in SCORED] for e, t in pairs], axis=0).tolist(),
         "hits": np.sum([[e[k][1] <= t[k] <= e[k][2] for k in SCORED] for e, t in pairs], axis=0).tolist(),
         "bound": np.max(bounds, axis=0).tolist(),
         "missed": judge.misses(full, carts)[0],
-        "growth": seen.values[0],
-        "widths": seen.values[1:],
+        "growth": growth,
+        "widths": widths,
     }
-
-
-class Quantities:
-    """The values that the judge compares with bounds, in order; none of them fails."""
-
-    def __enter__(self):
-        self.values: list[float] = []
-        self._kept = judge.kit.expect_bounded
-        judge.kit.expect_bounded = lambda value, **_: self.values.append(float(value))
-        return self
-
-    def __exit__(self, *_):
-        judge.kit.expect_bounded = self._kept
 
 
 def commands(seed: int) -> dict:
@@ -134,8 +116,10 @@ def commands(seed: int) -> dict:
     t = cart.H * np.arange(2000)
     made = {kind: bench.excitation(kind, 20.0, rng) for kind in ("prbs", "multisine", "chirp", "slow_sine")}
     for name in ("multisine", "shift_register"):
-        variant = load(ROOT / f"solutions/sim-to-real/accepted/{name}.py", name, vars(model))
-        made[f"accepted {name}"] = np.asarray(variant.design_excitation(20.0, cart.U_BENCH, rng), dtype=float)
+        variant = {}
+        exec(compose(SOLUTION, SOLUTION.parent / "accepted" / f"{name}.py"), variant)
+        force = variant["design_excitation"](20.0, cart.U_BENCH, rng)
+        made[f"accepted {name}"] = np.asarray(force, dtype=float)
     made["sine of 0.5 Hz"] = cart.U_BENCH * np.sin(2 * np.pi * 0.5 * t)
     made["reversals every 2 s"] = cart.U_BENCH * np.where(t % 4 < 2, 1.0, -1.0)
     made["one push of 2 s"] = np.where(t < 2.0, cart.U_BENCH, 0.0)

@@ -48,7 +48,7 @@ from compare import (  # noqa: E402
     otter_test,
 )
 
-from tests.journeys.processes import below, stored  # noqa: E402
+from tests.journeys.processes import below, marked, resident, stored  # noqa: E402
 
 #: What is installed for each peer; the rest of what it needs is its own to name. Otter runs notebooks with
 #: whatever kernel there is, and names none.
@@ -146,8 +146,7 @@ class Grader:
 class Pytest(Grader):
     """One `pytest` process; the tests lie beside the file, as a simple autograder does it."""
 
-    name = "pytest"
-    forge = "os.kill(os.getpid(), 0); raise OSError"  # the result is an exit code: no file to rewrite
+    name = "pytest"  # the result is an exit code: no file to rewrite
 
     def submission(self, place: Place, student: str) -> Path:
         return place.folder / "work" / student / "doubling.py"
@@ -340,26 +339,6 @@ class Ours(Grader):
 # -- one attack ---------------------------------------------------------------------------------------------
 
 
-def marked(token: str) -> list[int]:
-    """Processes whose command line or environment has the token, but for this one."""
-    found = []
-    for entry in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            known = (entry / "cmdline").read_bytes() + (entry / "environ").read_bytes()
-            if token.encode() in known and int(entry.name) != os.getpid():
-                found.append(int(entry.name))
-    return found
-
-
-def held(pid: int) -> int:
-    """Bytes in memory of the largest of a process and those below it."""
-    most = 0
-    for child in (pid, *below(pid)):
-        with contextlib.suppress(OSError, IndexError, ValueError):
-            most = max(most, int(Path(f"/proc/{child}/statm").read_text().split()[1]) * 4096)
-    return most
-
-
 def prepared(grader: Grader, folder: Path) -> Place:
     """The instructor's side of an exercise with a number and a word of its own."""
     place = Place(folder, f"{random.randint(1000, 9999)}.25", f"w{uuid.uuid4().hex}")
@@ -404,7 +383,7 @@ def attack(grader: Grader, made: Place, name: str, source: str, patience_s: floa
                 stdout=printed, stderr=printed, start_new_session=True,
             )  # fmt: skip
             while run.poll() is None:
-                most_held = max(most_held, held(run.pid))
+                most_held = max(most_held, *map(resident, (run.pid, *below(run.pid))))
                 most_stored = max(most_stored, stored(place.folder))
                 if time.monotonic() - start > patience_s:
                     in_time = False

@@ -48,21 +48,23 @@ def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(tmp_path
         (tmp_path / "log.jsonl").write_text("\n".join(map(json.dumps, lines)), encoding="utf-8")
         patch.setattr(seeds, "LOG", tmp_path / "log.jsonl")
         assert seeds.proven(exercise, catalog) == proven - {source}
-    with monkeypatch.context() as patch:
-        patch.setattr(seeds, "compose", lambda solution, path: path.read_bytes() + b"\n")
-        assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"mutants"}
-    with monkeypatch.context() as patch:
-        patch.setattr(Variant, "composed", lambda *_: "other = None\n")
-        assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"accepted"}
-    with monkeypatch.context() as patch:
-        caught = dict.fromkeys(caught_by(catalog, exercise), "another_check")
-        patch.setattr(seeds, "caught_by", lambda *_: caught)
-        assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"accepted"}
-    with monkeypatch.context() as patch:
-        patch.setattr(seeds, "made_from", lambda *_: "other known mistakes")
-        assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"accepted"}
-        patch.setattr(seeds, "code_of", lambda *_: b"other checks")
-        assert not seeds.proven(exercise, catalog)
+    caught = dict.fromkeys(caught_by(catalog, exercise), "another_check")
+    for where, name, instead, kept in (
+        (seeds, "compose", lambda _, path: path.read_bytes() + b"\n", "mutants"),
+        (Variant, "composed", lambda *_: "other = None\n", "accepted"),
+        (seeds, "caught_by", lambda *_: caught, "accepted"),
+        (seeds, "made_from", lambda *_: "other known mistakes", "accepted"),
+        (
+            seeds,
+            "code_of",
+            lambda *_: b"other checks",
+            "mutants",
+        ),  # a mutant goes by `made_from`, which holds it
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(where, name, instead)
+            still = seeds.proven(exercise, catalog)
+        assert {names[source].partition("/")[0] for source in still} == {kept}, name
 
 
 def test_an_exercise_that_was_never_graded_under_all_seeds_has_nothing_on_record(monkeypatch):

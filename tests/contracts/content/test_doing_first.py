@@ -7,7 +7,7 @@ minutes, and then read 815 words before the first question of a lesson. So: a qu
 run right after it, and a task within four.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import pytest
 
@@ -17,42 +17,30 @@ from course.catalog.locate import content
 from course.reading.parts import read_script
 
 CATALOG = Catalog(content())
-TO_THE_QUESTION, TO_ITS_RUN, TO_A_TASK = 250, 200, 600
+#: The most words before the question that the first cell answers, from it to the cell, and before a task.
+MOST = {"question": 250, "run": 200, "task": 600}
 
 
-@dataclass(frozen=True)
-class Start:
-    """Words before the question that the first cell answers, from it to the cell, and before a task."""
-
-    question: int
-    run: int
-    task: int
+def read(lesson_id):
+    return read_script(CATALOG.lesson(lesson_id), CATALOG.warm_ups(lesson_id))
 
 
-def start_of(script):
-    words = script.weights
+def too_late(script):
+    """What comes too late, and after how many words."""
     cell = script.shown_cells[0].index
     asked = max(one.index for one in script.questions if one.index < cell)
     task = next(index for index, block in enumerate(script.blocks) if isinstance(block, b.Task))
-    return Start(sum(words[:asked]), sum(words[asked:cell]), sum(words[:task]))
-
-
-def too_late(start):
-    limits = {"question": TO_THE_QUESTION, "run": TO_ITS_RUN, "task": TO_A_TASK}
-    found = {name: (getattr(start, name), limit) for name, limit in limits.items()}
-    return [
-        f"{name}: {words} words, at most {limit}" for name, (words, limit) in found.items() if words > limit
-    ]
+    parts = {"question": slice(asked), "run": slice(asked, cell), "task": slice(task)}
+    words = {name: sum(script.weights[part]) for name, part in parts.items()}
+    return {name: count for name, count in words.items() if count > MOST[name]}
 
 
 @pytest.mark.parametrize("lesson_id", CATALOG.lesson_ids())
 def test_a_lesson_begins_with_a_question_its_run_and_a_warm_up(lesson_id):
-    script = read_script(CATALOG.lesson(lesson_id), CATALOG.warm_ups(lesson_id))
-    assert too_late(start_of(script)) == []
+    assert too_late(read(lesson_id)) == {}
 
 
 def test_a_page_more_to_read_first_is_too_late():
-    lesson_id = CATALOG.lesson_ids()[0]
-    script = read_script(CATALOG.lesson(lesson_id), CATALOG.warm_ups(lesson_id))
-    longer = replace(script, weights=(TO_A_TASK, *script.weights[1:]))
-    assert [line.split(":")[0] for line in too_late(start_of(longer))] == ["question", "task"]
+    script = read(CATALOG.lesson_ids()[0])
+    longer = replace(script, weights=(MOST["task"], *script.weights[1:]))
+    assert list(too_late(longer)) == ["question", "task"]

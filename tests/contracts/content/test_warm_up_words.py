@@ -5,12 +5,13 @@ from pathlib import Path
 import pytest
 
 from course.authoring.exercises.diagnosis import hypotheses_of, sums_of
-from course.authoring.exercises.grading import LocalSubmission, solutions_folder
+from course.authoring.exercises.grading import LocalSubmission, solution_path
 from course.catalog.load import Catalog
 from course.scoring.checks.collected import CollectedChecks, questions_of
 from course.scoring.explain.story import common, matching, read_table
 from course.scoring.judging.session import check_files
 
+CATALOG = Catalog()
 #: Two mistakes that leave the answers of one: what the one is called is as true.
 AS_TRUE = {
     frozenset({"SIGN_TURNED", "OF_THE_COARSE"}): "NEGATIVE_POWER",
@@ -30,19 +31,14 @@ AS_TRUE = {
 }
 
 
-@pytest.fixture(scope="module")
-def catalog():
-    return Catalog()
-
-
-@pytest.mark.parametrize("warm_up", Catalog().warm_up_ids())
-def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog, warm_up):
-    exercise = catalog.exercise(warm_up)
-    checks = CollectedChecks(check_files(exercise, catalog, "public"), draws=False)
-    model = (solutions_folder(catalog, exercise) / exercise.module).read_text(encoding="utf-8")
+@pytest.mark.parametrize("warm_up", CATALOG.warm_up_ids())
+def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(warm_up):
+    exercise = CATALOG.exercise(warm_up)
+    checks = CollectedChecks(check_files(exercise, CATALOG, "public"), draws=False)
+    model = solution_path(CATALOG, exercise).read_text(encoding="utf-8")
     table, questions = read_table(Path(exercise.folder)), questions_of(warm_up)
     assert questions is not None
-    for task, codes, function in hypotheses_of(catalog, exercise):
+    for task, codes, function in hypotheses_of(CATALOG, exercise):
         submission = LocalSubmission(model, replaced={task: function})
         outcomes = [checks.run(check, submission) for check in checks.in_order() if check.task == task]
         assert any(outcomes), f"no check fails for {codes}"

@@ -9,6 +9,7 @@ so does a program that looks the fixed inputs of the public checks up in the tab
 import ast
 import itertools
 import types
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -81,26 +82,26 @@ def loaded(name):
 class Stripped(ast.NodeTransformer):
     """Imports of the course's become ``Nothing``, ``kit`` a helper that finds files of the same exercise."""
 
-    def _bound(self, names):
+    def visit_ImportFrom(self, node):
+        return None if node.module == "__future__" else self._stripped(node, [node.module or ""])
+
+    def visit_Import(self, node):
+        return self._stripped(node, [name.name for name in node.names])
+
+    def _stripped(self, node, modules):
+        if not {module.split(".")[0] for module in modules} & {"course", "pytest", "pymunk"}:
+            return node
         text = "\n".join(
             f"{name.asname or name.name.split('.')[0]} = {'Kit' if name.name == 'kit' else 'Nothing'}()"
-            for name in names
+            for name in node.names
         )
         return ast.parse(text).body
 
-    def visit_ImportFrom(self, node):
-        if node.module == "__future__":
-            return None
-        ours = (node.module or "").split(".")[0] in {"course", "pytest", "pymunk"}
-        return self._bound(node.names) if ours else node
-
-    def visit_Import(self, node):
-        ours = any(name.name.split(".")[0] in {"course", "pytest", "pymunk"} for name in node.names)
-        return self._bound(node.names) if ours else node
-
 
 def shipped(exercise):
-    return sorted(exercise.readme_path.parent.glob("*.py"))
+    """The Python files of an exercise, but for the stub."""
+    files = exercise.readme_path.parent.glob("*.py")
+    return sorted(path for path in files if path.name != exercise.module)
 
 
 def handed_in(exercise):
@@ -109,7 +110,6 @@ def handed_in(exercise):
     files = {
         path.stem: future + ast.unparse(Stripped().visit(ast.parse(path.read_text("utf-8"))))
         for path in shipped(exercise)
-        if path.name != exercise.module
     }
     # Annotations are left to text, so that types of the course's need not be there.
     return f"{HEAD}\nFILES = {files!r}\n"
@@ -189,33 +189,31 @@ def _parameters(exercise, task):
 MOST = 40
 
 
-def scores(session, how):
-    """File, number of the choice, points, and the checks that passed.
+def winners(session, how):
+    """The files that score, and the checks that passed with them.
 
     A task's checks are run where the choice is one that the task has not had: files load each other, so that
     most of what one holds another one holds, too.
     """
     exercise = session.exercise
-    tried = dict[str, dict[object, object]]()
+    tried = defaultdict(dict)
     for path in shipped(exercise):
-        if path.name == exercise.module:
-            continue
         namespace = {"__name__": "handed_in"}
         exec(compile(submission(exercise, path.stem, how, 0), "handed_in", "exec"), namespace)
-        new = dict[int, set[str]]()
+        new = defaultdict(set)
         for task in exercise.task:
             held = namespace["candidates"](task.id, tuple(_parameters(exercise, task.id)), path.stem, how)
             for number, candidate in enumerate(itertools.islice(held, MOST)):
                 same = _known_by(candidate)
-                if same not in tried.setdefault(task.id, {}):
+                if same not in tried[task.id]:
                     tried[task.id][same] = candidate  # kept, or another one might get its id
-                    new.setdefault(number, set()).add(task.id)
+                    new[number].add(task.id)
         for number, tasks in sorted(new.items()):
             source = submission(exercise, path.stem, how, number)
             only = [check.id for check in session.checks if check.task in tasks]
             verdict = session.grade(Submission({exercise.module: source.encode()}), only=only)
-            passed = [check.id for check in verdict.checks if check.points > 0]
-            yield path.name, number, verdict.score, passed
+            if verdict.score > 0:
+                yield path.name, [check.id for check in verdict.checks if check.points > 0]
 
 
 def _known_by(candidate):
@@ -235,45 +233,31 @@ HOW = ["named", pytest.param("fitting", marks=pytest.mark.soak)]
 @pytest.mark.parametrize("exercise", CATALOG.exercises(), ids=lambda exercise: exercise.id)
 def test_no_shipped_file_scores_a_point(exercise, how):
     with GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=20.0)) as session:
-        found = [(file, points, passed) for file, _, points, passed in scores(session, how) if points > 0]
-    assert not found
+        assert list(winners(session, how)) == []
 
 
 @pytest.mark.parametrize("how", HOW)
 def test_no_shipped_file_of_a_warm_up_passes_one_of_its_checks(how):
-    found = {}
+    found, kinds = {}, {".py", ".toml", ".md", ".json", ""}
     for warm_up in CATALOG.warm_ups():
-        assert {path.suffix for path in Path(warm_up.folder).iterdir()} <= {
-            ".py",
-            ".toml",
-            ".md",
-            ".json",
-            "",
-        }
+        assert {path.suffix for path in Path(warm_up.folder).iterdir()} <= kinds
         with GradingSession(warm_up, CATALOG, scope="full", terms=Terms(timeout=20.0)) as session:
-            won = [(file, passed) for file, _, points, passed in scores(session, how) if points > 0]
-        found |= {warm_up.id: won} if won else {}
-    assert found == {}
+            found[warm_up.id] = list(winners(session, how))
+    assert not any(found.values()), found
 
 
-@pytest.mark.parametrize("exercise_id", ["collisions"])
-def test_the_shipped_answers_to_fixed_inputs_score_nothing_in_a_grading_run(exercise_id):
-    exercise = CATALOG.exercise(exercise_id)
-    questions = kit.companion(exercise_id, "questions")
-    known = {}
+def test_the_shipped_answers_to_fixed_inputs_score_nothing_in_a_grading_run():
+    exercise, questions = CATALOG.exercise("collisions"), kit.companion("collisions", "questions")
+    known = defaultdict(dict)
     for check, task in questions.TASKS.items():
         if not task.startswith("simulate"):
-            for args, answer in zip(
-                questions.FIXED[check], kit.known_answers(exercise_id, check), strict=True
-            ):
-                known.setdefault(task, []).append((repr(args), repr(answer)))
-    table = {task: dict(pairs) for task, pairs in known.items()}
-    source = f"from numpy import array, inf, nan\nKNOWN = {table!r}\n"
+            answers = zip(questions.FIXED[check], kit.known_answers(exercise.id, check), strict=True)
+            known[task] |= {repr(args): repr(answer) for args, answer in answers}
+    source = f"from numpy import array, inf, nan\nKNOWN = {dict(known)!r}\n"
     for task in known:
         source += f"def {task}(*args):\n    return eval(KNOWN[{task!r}].get(repr(args), 'None'))\n"
+    handed_in = Submission({exercise.module: source.encode()})
     with GradingSession(exercise, CATALOG, scope="public", terms=Terms(timeout=20.0)) as home:
-        at_home = home.grade(Submission({exercise.module: source.encode()}))
+        assert home.grade(handed_in).score > 0, "the table is what public checks expect"
     with GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=20.0, seed=7)) as run:
-        graded = run.grade(Submission({exercise.module: source.encode()}))
-    assert at_home.score > 0, "the table is what public checks expect"
-    assert graded.score == 0
+        assert run.grade(handed_in).score == 0

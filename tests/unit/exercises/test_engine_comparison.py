@@ -45,6 +45,13 @@ def cases_of(report, run=lambda box: [("free", (0.0,), (0.0,), 0.1, 1, (0.0,))])
     ]
 
 
+def finding(check, *given):
+    """What a check finds where it fails."""
+    with pytest.raises(kit.CheckFailed) as failed:
+        check(*given)
+    return failed.value.finding
+
+
 # -- judging ----------------------------------------------------------------------------------------------
 
 
@@ -79,9 +86,7 @@ def test_an_engine_that_brings_the_measurement_down_does_not_take_the_others_wit
 )
 def test_a_value_that_is_none_of_its_kind_or_off_costs_its_own_points_and_not_those_of_the_form(key, wrong):
     found = cases_of(lambda truth: truth | {key: wrong})
-    with pytest.raises(kit.CheckFailed) as failed:
-        judging.expect_key(found, key, 0)
-    said = failed.value.finding.message
+    said = finding(judging.expect_key, found, key, 0).message
     assert key in said or said.startswith(judging.MESSAGES[key])
     for other in set(bench.KEYS) - {key}:
         judging.expect_key(found, other, 0)
@@ -122,9 +127,8 @@ def hits(box):
     ],
 )
 def test_a_probe_says_what_it_sees_and_no_more(key, slip, code, runs):
-    with pytest.raises(kit.CheckFailed) as failed:
-        judging.expect_key(cases_of(lambda truth: {**truth, key: slip(truth)}, *runs), key, 0)
-    assert failed.value.finding.diagnosis == code
+    found = cases_of(lambda truth: {**truth, key: slip(truth)}, *runs)
+    assert finding(judging.expect_key, found, key, 0).diagnosis == code
 
 
 @pytest.mark.parametrize("scope", ["public", "full"])
@@ -146,47 +150,35 @@ def test_a_value_is_called_kept_only_where_it_is_that_of_an_engine_that_shows_th
     found, truth = cases_of(dict), {**boxes.TRUTH["balsa"], "linear_damping": 2.1}
     other = dataclasses.replace(boxes.BALSA, damping=2.1, omega=2.5)
     found.append(bench.Case("twin", other, truth, runs=found[0].runs, report=dict(boxes.TRUTH["balsa"])))
-    with pytest.raises(kit.CheckFailed) as failed:
-        judging.expect_key(found, "linear_damping", 0)
-    assert failed.value.finding.diagnosis is None
+    assert finding(judging.expect_key, found, "linear_damping", 0).diagnosis is None
 
 
 def test_a_value_that_is_a_small_whole_number_of_info_by_chance_is_not_shown_beside_it():
     truth = {**boxes.TRUTH["anvil"], "friction_anisotropy": 1.0}
     case = bench.Case("anvil", boxes.ANVIL, truth, report={**truth, "friction_anisotropy": boxes.ANVIL.mass})
-    with pytest.raises(kit.CheckFailed) as failed:
-        judging.expect_key([case], "friction_anisotropy", 0)
-    assert boxes.ANVIL.mass not in failed.value.finding.input.values()
+    shown = finding(judging.expect_key, [case], "friction_anisotropy", 0).input
+    assert boxes.ANVIL.mass not in shown.values()
 
 
 # -- choosing ---------------------------------------------------------------------------------------------
 
 
-class Chooser:
+def chooser(function):
     """A submission whose ``choose_engine`` is the given function."""
-
-    def __init__(self, function):
-        self._function = function
-
-    def call(self, _, *args):
-        self.asking = args
-        try:
-            return self._function(*args)
-        except TypeError as error:
-            raise kit.StudentFailure("error", type=type(error).__name__) from None
-
-    def call_each(self, name, calls):
-        return [self.call(name, *call) for call in calls]
+    return LocalSubmission("", replaced={"choose_engine": function})
 
 
 def test_an_exception_that_comes_where_everything_was_measured_too_is_shown_with_its_call():
     reports, needs = {"a": {"noise_db": None, "limit": 0.5, "cost": 1.0}}, [measured.need("limit", "<=", 1)]
-    chooser = Chooser(lambda reports, needs: needs["key"])
+    asked = []
+
+    def choose(*args):
+        asked.append(args)
+        return args[1]["key"]
+
     with pytest.raises(kit.StudentFailure):  # which says nothing of missing values
-        choosing.expect_choices(
-            chooser, [(reports, needs, "a"), (reports, [measured.need("limit", "<=", 1)], None)]
-        )
-    assert chooser.asking == (reports, needs)
+        choosing.expect_choices(chooser(choose), [(reports, needs, "a"), (reports, needs, None)])
+    assert asked[-1] == (reports, needs)
 
 
 @pytest.mark.parametrize(
@@ -200,18 +192,15 @@ def test_an_exception_that_comes_where_everything_was_measured_too_is_shown_with
 def test_digits_that_decide_are_shown(value, costs, shown):
     reports = {name: {"restitution": 0.6, "cost": cost} for name, cost in zip("ab", costs, strict=True)}
     needs = [measured.need("restitution", "==", value)]
-    with pytest.raises(kit.CheckFailed) as failed:
-        choosing.expect_choices(Chooser(lambda *_: "b"), [(reports, needs, "a")])
-    told = format_input(failed.value.finding.input)
+    found = finding(choosing.expect_choices, chooser(lambda *_: "b"), [(reports, needs, "a")])
+    told = format_input(found.input)
     assert all(f": {digits}}}" in told for digits in shown)
 
 
 def test_an_argument_that_was_changed_is_seen_whatever_was_put_there():
-    reports, needs = {"a": {"cost": 1.0}}, [measured.need("order", ">=", 2)]
-    spoilt = kit.Inspected(None, [{"a": np.zeros(3)}, needs], shared=False)
-    with pytest.raises(kit.CheckFailed) as failed:
-        choosing.expect_untouched(types.SimpleNamespace(call_inspect=lambda *_: spoilt), reports, needs)
-    assert failed.value.finding.diagnosis == "MUTATES_INPUT"
+    spoils = chooser(lambda reports, needs: reports.update(a=np.zeros(3)))
+    given = {"a": {"cost": 1.0}}, [measured.need("order", ">=", 2)]
+    assert finding(choosing.expect_untouched, spoils, *given).diagnosis == "MUTATES_INPUT"
 
 
 REAL_QUESTIONS = [*measured.QUESTIONS.values(), *choices.REAL]
@@ -246,26 +235,28 @@ SCENARIOS = {
 }  # fmt: skip
 
 
+def shipped(setting, key):
+    """The measurement that a key of a report comes from, and how a value of it is told."""
+    (engine, words), (scenario, unit) = setting.split(", "), SCENARIOS[key]
+    row = reference.row(engine, scenario, measured.SETTINGS[words])
+    return row, lambda value: unit * (abs(value) if "error" in key else value)
+
+
 def test_what_is_chosen_meets_its_requirements_in_every_phase_and_from_every_start():
     for needs, answer in REAL_QUESTIONS:
         for need in needs if answer else ():
-            key = need["key"]
-            if key in SCENARIOS:
-                name, unit = SCENARIOS[key]
-                engine, words = answer.split(", ")
-                row = reference.row(engine, name, measured.SETTINGS[words])
-                reach = [unit * (abs(x) if "error" in key else x) for x in (row.lowest, row.highest)]
+            if (key := need["key"]) in SCENARIOS:
+                row, told = shipped(answer, key)
+                reach = map(told, (row.lowest, row.highest))
                 assert all(right.meets({key: x}, need) for x in reach), (answer, need)
 
 
 def test_the_reports_of_real_engines_are_the_measurements_that_ship():
-    for name, report in measured.reports().items():
-        engine, words = name.split(", ")
+    for setting, report in measured.reports().items():
         for key in ("rebound_m", "fall_error", "slope_error", "pendulum_loss", "rate", "clash_error"):
-            scenario, unit = SCENARIOS[key]
-            row = reference.row(engine, scenario, measured.SETTINGS[words])
+            row, told = shipped(setting, key)
             found = max(map(abs, row.samples)) if key == "clash_error" else row.value
-            assert report[key] == pytest.approx(unit * (abs(found) if "error" in key else found), rel=0.006)
+            assert report[key] == pytest.approx(told(found), rel=0.006)
         assert report["cost"] == pytest.approx(1 / report["rate"], rel=0.006)
     keys = {need["key"] for needs, _ in REAL_QUESTIONS for need in needs} - {"price_eur"}
     assert keys <= set(next(iter(measured.reports().values())))
@@ -304,10 +295,9 @@ def test_a_fact_is_judged_by_what_it_says(judge, asked, found):
 
 @pytest.mark.parametrize("value", ["None", "0.002"])
 def test_a_step_in_quotation_marks_is_told_as_that(value):
-    with pytest.raises(kit.CheckFailed) as failed:
-        listing.step_of(value, "the default_step_s of ode")
-    assert failed.value.finding.actual == repr(value)
-    assert "quotation marks" in failed.value.finding.help
+    found = finding(listing.step_of, value, "the default_step_s of ode")
+    assert found.actual == repr(value)
+    assert "quotation marks" in found.help
 
 
 @pytest.mark.parametrize("bad", [None, 3, [1, [2]], np.zeros(3), {"a": 1}, 10**400, "", True])

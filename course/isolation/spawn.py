@@ -11,7 +11,6 @@ above this package has to know of it.
 
 from __future__ import annotations
 
-import array
 import contextlib
 import json
 import os
@@ -137,17 +136,12 @@ class ZygoteSpawner:
         return text.splitlines()[-1] if text else ""
 
     def _send(self, message: dict[str, Any], descriptors: tuple[int, ...] = ()) -> None:
-        held = array.array("i", descriptors)
-        rights = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, held)] if descriptors else []
-        self._control.sendmsg([json.dumps(message).encode()], rights)
+        socket.send_fds(self._control, [json.dumps(message).encode()], descriptors)
 
     def _receive(self) -> tuple[dict[str, Any], int | None]:
-        message, ancillary, _, _ = self._control.recvmsg(4096, socket.CMSG_LEN(4))
+        message, received, _, _ = socket.recv_fds(self._control, 4096, 1)
         if not message:
             raise OSError("the zygote ended")
-        received = array.array("i")
-        for _, _, data in ancillary:
-            received.frombytes(data[: len(data) - len(data) % received.itemsize])
         return json.loads(message), received[0] if received else None
 
     def spawn(self) -> Handle:

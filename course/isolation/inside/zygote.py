@@ -8,7 +8,6 @@ the course.
 
 from __future__ import annotations
 
-import array
 import contextlib
 import ctypes
 import errno
@@ -227,18 +226,12 @@ def _keep_only(sock: int, output: int, rules: int) -> None:
 
 
 def _request(control: socket.socket) -> tuple[dict[str, Any] | None, list[int]]:
-    message, ancillary, _, _ = control.recvmsg(4096, socket.CMSG_LEN(16))
-    descriptors = array.array("i")
-    for level, kind, data in ancillary:
-        if level == socket.SOL_SOCKET and kind == socket.SCM_RIGHTS:
-            descriptors.frombytes(data[: len(data) - len(data) % descriptors.itemsize])
-    return (json.loads(message) if message else None), list(descriptors)
+    message, descriptors, _, _ = socket.recv_fds(control, 4096, 2)
+    return (json.loads(message) if message else None), descriptors
 
 
-def _reply(control: socket.socket, message: dict[str, Any], descriptor: int | None = None) -> None:
-    held = array.array("i", [] if descriptor is None else [descriptor])
-    rights = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, held)] if held else []
-    control.sendmsg([json.dumps(message).encode()], rights)
+def _reply(control: socket.socket, message: dict[str, Any], *descriptors: int) -> None:
+    socket.send_fds(control, [json.dumps(message).encode()], descriptors)
 
 
 if __name__ == "__main__":

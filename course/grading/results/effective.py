@@ -96,6 +96,11 @@ class Effective:
         return self.result.verdict
 
     @property
+    def seconds(self) -> float:
+        """Wall time of its checks, in s."""
+        return sum(check.duration_ms for check in self.verdict.checks) / 1e3
+
+    @property
     def missing(self) -> bool:
         """Whether an enrolled student handed in nothing, and no decision was made about it."""
         return self.verdict.state == MISSING and self.override is None

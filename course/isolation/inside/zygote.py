@@ -139,9 +139,10 @@ def _answer(control: socket.socket, own_namespace: int) -> tuple[list[int], str]
     """One request of the grader's: in a new fork its descriptors and folder, here None."""
     from course_worker.isolation.inside import lockdown
 
-    request, descriptors = _request(control)
-    if request is None:
+    message, descriptors, _, _ = socket.recv_fds(control, 4096, 2)
+    if not message:
         os._exit(0)
+    request = json.loads(message)
     if "reap" in request:
         _reap(control, request["reap"])
         return None
@@ -223,11 +224,6 @@ def _keep_only(sock: int, output: int, rules: int) -> None:
     close_range, last = ctypes.c_long(436), ctypes.c_uint(0xFFFFFFFF)
     if _libc.syscall(close_range, ctypes.c_uint(len(kept)), last, ctypes.c_uint(0)) != 0:
         os.closerange(len(kept), os.sysconf("SC_OPEN_MAX"))
-
-
-def _request(control: socket.socket) -> tuple[dict[str, Any] | None, list[int]]:
-    message, descriptors, _, _ = socket.recv_fds(control, 4096, 2)
-    return (json.loads(message) if message else None), descriptors
 
 
 def _reply(control: socket.socket, message: dict[str, Any], *descriptors: int) -> None:

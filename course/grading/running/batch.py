@@ -103,10 +103,11 @@ class WarmGrader(Servant):
             InternalError: no grader can be started here.
         """
         for _ in range(MAX_TRIES):
-            answer = _answer_to(job, self.ask(job))
-            if answer is not None:
-                return answer
-            self.close()
+            with contextlib.suppress(msgspec.MsgspecError):  # no frame is none of an answer either
+                answer = msgspec.msgpack.decode(self.ask(job) or b"", type=Answer)
+                if answer.is_about(job):
+                    return answer
+            self.close()  # also one that answers another question: something else may have answered
         return Answer(number=job.number, sha256=Submission(job.files).sha256)
 
     def _launch(self) -> subprocess.Popen[bytes]:
@@ -180,21 +181,6 @@ def job_of(entry: Entry, version: str) -> Job:
     assert entry.submission is not None
     files = dict(entry.submission.files)
     return Job(entry.exercise.id, files, version, only=entry.only, asks=entry.asks)
-
-
-def _answer_to(job: Job, frame: bytes | None) -> Answer | None:
-    """The answer in a grader's frame; None if there is none, or one to something else than was asked.
-
-    A grader that answers another question than it was asked counts as dead, because something else may have
-    answered.
-    """
-    if frame is None:
-        return None
-    try:
-        answer = msgspec.msgpack.decode(frame, type=Answer)
-    except msgspec.MsgspecError:
-        return None
-    return answer if answer.is_about(job) else None
 
 
 def as_error(problem: Problem, exit_code: int) -> CourseError:

@@ -34,6 +34,7 @@ from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import ELSEWHERE, SubmittedAt
 from course.grading.intake.archives import RefusedError, reader
 from course.grading.intake.downloads import (
+    IS_CODE,
     Place,
     Student,
     is_clutter,
@@ -559,8 +560,6 @@ _CODE = 3 << 20
 #: ``integrators`` is 0.95, ``collision`` for ``integrators`` 0.3.
 _ALIKE = 0.75
 _SHOWN = 4
-#: Kinds of files that are read as code.
-_READABLE = ("", "a text", "a notebook")
 
 
 class Candidate(msgspec.Struct, frozen=True):
@@ -724,7 +723,7 @@ def found_for(
         if mine or alike or one in asked:
             # What cannot be read as code can be named, and not proposed.
             worth, alike = len(written), alike + 0.1 * bool(mine)
-            if one.kind not in _READABLE or (outside and lies_aside(one.name)):
+            if one.kind not in IS_CODE or (outside and lies_aside(one.name)):
                 worth, alike = 0, 0.0
             ranked.append((worth, alike, msgspec.structs.replace(one, defines=mine, written=written)))
     ranked.sort(key=lambda item: (-item[0], -item[1], *_by_name(item[2])))

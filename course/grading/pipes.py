@@ -14,7 +14,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from time import process_time
 from typing import IO, Any
@@ -31,6 +31,8 @@ except ImportError:  # Windows has none of these limits
 _LENGTH = struct.Struct("<I")
 #: Wall seconds that a process has to clean up after the one it worked for is gone.
 _LAST_S = 3.0
+#: Wall seconds that a process may take to start beside those for a question, and between two looks at it.
+_START_S, _TICK_S = 60.0, 0.5
 
 
 def read_frame(source: IO[bytes], most: int | None = None) -> bytes | None:
@@ -81,18 +83,25 @@ def served(source: IO[bytes]) -> Iterator[bytes]:
 
 
 class Servant:
-    """A process that reads strangers' files; started when it is first needed, and again after one killed it.
+    """A process that answers questions; started when it is first needed, and again after one killed it.
+
+    It writes a frame when it is ready, then answers each frame with one.
 
     Args:
-        module: its program: it writes a frame when it is ready, then answers each frame with one.
+        module: its program.
         arguments: of that program.
         wall_s: seconds after which it is killed over a question.
     """
 
+    #: How often it is started, should it die before it is ready, and what is said if it always does.
+    tries = 1
+    cannot_start = "The process that reads submissions does not start; see what it printed."
+
     def __init__(self, module: str, *arguments: str, wall_s: float) -> None:
-        self._command = [sys.executable, "-P", "-m", module, *arguments]
+        self._command = [module, *arguments]
         self._wall_s = wall_s
         self._process: subprocess.Popen[bytes] | None = None
+        self._over = False
 
     def ask(self, question: Any, most: int | None = None) -> bytes | None:
         """Its answer; None if it died over the question, took too long, or says more than ``most`` bytes.
@@ -100,49 +109,92 @@ class Servant:
         Raises:
             InternalError: it does not start.
         """
-        process = self._process or self._start()
-        assert process.stdin is not None
-        assert process.stdout is not None
-        too_long = threading.Timer(self._wall_s, process.kill)
-        too_long.start()
-        try:
-            write_frame(process.stdin, question)
-            frame = read_frame(process.stdout, most)
-        except OSError:
-            frame = None
-        finally:
-            too_long.cancel()
+        frame = self._said(self._process or self._start(), question, most)
         if frame is None:
             self.close()
         return frame
 
-    def close(self) -> None:
-        """End the process; the next question starts another one."""
+    def _start(self) -> subprocess.Popen[bytes]:
+        for _ in range(self.tries):
+            if self._over:
+                break
+            process = self._process = self._launch()
+            if self._said(process) is not None:
+                return process
+            self.close()
+        raise InternalError(self.cannot_start)
+
+    def _launch(self) -> subprocess.Popen[bytes]:
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+        environment["PYTHONPATH"] = path_with(Path(__file__).resolve().parents[2])
+        return launched(*self._command, environment=environment)
+
+    def _said(
+        self, process: subprocess.Popen[bytes], question: Any = None, most: int | None = None
+    ) -> bytes | None:
+        """What a process says to a question, or first of all; None once it is dead.
+
+        One that takes too long, or was stopped, is killed.
+        """
+        until = time.monotonic() + self._wall_s + (_START_S if question is None else 0.0)
+        heard = threading.Event()
+
+        def watch() -> None:
+            while not heard.wait(_TICK_S):
+                if self._over or time.monotonic() > until or _is_stopped(process.pid):
+                    process.kill()  # its pipes close
+
+        threading.Thread(target=watch, daemon=True).start()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        try:
+            with contextlib.suppress(OSError):  # it died: reading from it will say so
+                if question is not None:
+                    write_frame(process.stdin, question)
+            return read_frame(process.stdout, most)
+        finally:
+            heard.set()
+
+    def end(self) -> None:
+        """Have the thread that waits for an answer wait no longer, and start no other process."""
+        self._over = True
+        process = self._process
+        if process is not None:
+            process.kill()
+
+    def close(self, patience_s: float = 0.0) -> None:
+        """End the process, which has so many seconds to clean up; the next question starts another one."""
         process, self._process = self._process, None
         if process is None:
             return
-        process.kill()
-        process.wait()
-        for stream in (process.stdin, process.stdout):
+        with process:
             with contextlib.suppress(OSError):
-                if stream is not None:
-                    stream.close()
+                if process.stdin:
+                    process.stdin.close()  # it ends at end of file, its sandbox with it
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(patience_s)
+            process.kill()
 
-    def _start(self) -> subprocess.Popen[bytes]:
-        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-        environment["PYTHONPATH"] = path_with(Path(__file__).resolve().parents[2])
-        process = self._process = subprocess.Popen(
-            self._command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env=environment,
-            start_new_session=True,  # Ctrl-C is for whoever asks, which ends it
-        )
-        assert process.stdout is not None
-        if read_frame(process.stdout) is None:
-            self.close()
-            raise InternalError("The process that reads submissions does not start; see what it printed.")
-        return process
+
+def launched(module: str, *arguments: str, environment: Mapping[str, str]) -> subprocess.Popen[bytes]:
+    """A program of ours, spoken to through its pipes."""
+    return subprocess.Popen(
+        # -P: the folder the command is run in, which may be a student's, never becomes importable.
+        [sys.executable, "-P", "-m", module, *arguments],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=environment,
+        start_new_session=True,  # Ctrl-C is for whoever asks, which ends it
+    )
+
+
+def _is_stopped(pid: int) -> bool:
+    """Whether a signal stopped that process: a submission at L1 may send one, and nothing would wake it."""
+    if not hasattr(os, "waitid"):
+        return False
+    with contextlib.suppress(ChildProcessError):
+        return os.waitid(os.P_PID, pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
+    return False
 
 
 def path_with(folder: Path) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal, Self
 
 from course.printable import one_line
@@ -19,6 +20,7 @@ class IsolationError(Exception):
     """The protected process could not be started, or does not follow the protocol."""
 
 
+@dataclass(eq=False)
 class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for what it says
     """The student's code gave no value.
 
@@ -36,25 +38,19 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
         why: of a "missing" function, what kept it from being loaded.
     """
 
-    def __init__(
-        self,
-        kind: FailureKind,
-        *,
-        type: str = "",  # noqa: A002 - the field's name
-        message: str = "",
-        line: int | None = None,
-        traceback: str = "",
-        bases: Sequence[str] = (),
-    ) -> None:
-        super().__init__(kind, type, message)
-        self.kind = kind
-        self.type = type
-        self.message = message
-        self.line = line
-        self.traceback = traceback
-        self.bases = tuple(bases) or (type,)
-        self.places: Any = None
-        self.why: StudentFailure | None = None
+    kind: FailureKind
+    _: KW_ONLY
+    type: str = ""
+    message: str = ""
+    line: int | None = None
+    traceback: str = ""
+    bases: Sequence[str] = ()
+    places: Any = None
+    why: StudentFailure | None = None
+
+    def __post_init__(self) -> None:
+        super().__init__(self.kind, self.type, self.message)
+        self.bases = tuple(self.bases) or (self.type,)
 
     @classmethod
     def missing(cls, function: str, why: StudentFailure | None = None) -> Self:
@@ -63,9 +59,7 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
         Args:
             why: what kept it from being loaded, if the file has it.
         """
-        failure = cls("missing", type=function, message=f"no function {function!r}")
-        failure.why = why
-        return failure
+        return cls("missing", type=function, message=f"no function {function!r}", why=why)
 
     def is_a(self, exception: str) -> bool:
         """Whether the student's code raised this exception or one derived from it."""

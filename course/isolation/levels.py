@@ -138,15 +138,13 @@ class Spawner(Protocol):
 
 def ticking(sock: socket.socket) -> socket.socket:
     """A socket whose blocking reads and writes return every ``TICK_S``, without a poll before each."""
-    import socket as sockets
-
     if sys.platform == "win32":
         sock.settimeout(TICK_S)
         return sock
     sock.setblocking(True)
     tick = struct.pack("@ll", 0, int(TICK_S * 1e6))
-    sock.setsockopt(sockets.SOL_SOCKET, sockets.SO_RCVTIMEO, tick)
-    sock.setsockopt(sockets.SOL_SOCKET, sockets.SO_SNDTIMEO, tick)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, tick)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, tick)
     return sock
 
 

@@ -11,6 +11,7 @@ import contextlib
 import functools
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from time import monotonic, sleep
 from typing import Any, NamedTuple
 
@@ -127,6 +128,7 @@ _MOST_FAULTS = 60
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 
 
+@dataclass(eq=False)
 class LoadRefusedError(Exception):
     """The submission could not be loaded at all.
 
@@ -138,13 +140,14 @@ class LoadRefusedError(Exception):
         printed: what it printed till then.
     """
 
-    def __init__(self, stage: str, failure: StudentFailure, text: str = "", code: str = "") -> None:
-        super().__init__(stage, str(failure))
-        self.stage = stage
-        self.failure = failure
-        self.text = text
-        self.code = code
-        self.printed = ""
+    stage: str
+    failure: StudentFailure
+    text: str = ""
+    code: str = ""
+    printed: str = ""
+
+    def __post_init__(self) -> None:
+        super().__init__(self.stage, str(self.failure))
 
 
 class LoadFault(NamedTuple):

@@ -11,7 +11,6 @@ above this package has to know of it.
 
 from __future__ import annotations
 
-import array
 import contextlib
 import json
 import os
@@ -24,6 +23,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -137,17 +137,12 @@ class ZygoteSpawner:
         return text.splitlines()[-1] if text else ""
 
     def _send(self, message: dict[str, Any], descriptors: tuple[int, ...] = ()) -> None:
-        held = array.array("i", descriptors)
-        rights = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, held)] if descriptors else []
-        self._control.sendmsg([json.dumps(message).encode()], rights)
+        socket.send_fds(self._control, [json.dumps(message).encode()], descriptors)
 
     def _receive(self) -> tuple[dict[str, Any], int | None]:
-        message, ancillary, _, _ = self._control.recvmsg(4096, socket.CMSG_LEN(4))
+        message, received, _, _ = socket.recv_fds(self._control, 4096, 1)
         if not message:
             raise OSError("the zygote ended")
-        received = array.array("i")
-        for _, _, data in ancillary:
-            received.frombytes(data[: len(data) - len(data) % received.itemsize])
         return json.loads(message), received[0] if received else None
 
     def spawn(self) -> Handle:
@@ -260,20 +255,21 @@ def _number_here(pidfd: int) -> int:
     return next(int(line.partition(":")[2]) for line in lines if line.startswith("Pid:"))
 
 
+@dataclass(eq=False)
 class _ForkedHandle:
     """A worker forked by the zygote, ended by its pidfd."""
 
-    def __init__(
-        self, sock: socket.socket, pid: int, pidfd: int, output: int, workdir: str, owner: ZygoteSpawner
-    ) -> None:
-        self.channel = self._socket = ticking(sock)
-        self._pid = pid
-        self._pidfd = pidfd
-        self._output = output
-        self._workdir = workdir
-        self._owner = owner
-        self._exit: Exit | None = None
-        clock = ProcessClock(_number_here(pidfd))
+    channel: socket.socket
+    _pid: int
+    _pidfd: int
+    _output: int
+    _workdir: str
+    _owner: ZygoteSpawner
+    _exit: Exit | None = None
+
+    def __post_init__(self) -> None:
+        ticking(self.channel)
+        clock = ProcessClock(_number_here(self._pidfd))
         self.cpu_s, self.asleep = clock.cpu_s, clock.asleep
 
     def output(self) -> str:
@@ -296,7 +292,7 @@ class _ForkedHandle:
             try:
                 self._exit = self._owner.reap(self._pid)
             finally:
-                self._socket.close()
+                self.channel.close()
                 os.close(self._pidfd)
                 os.close(self._output)
                 if self._owner.level is Level.L2:
@@ -383,23 +379,19 @@ class ProcessSpawner:
         launch.sweep(self._folder)
 
 
+@dataclass(eq=False)
 class _ProcessHandle:
     """A worker that is a plain child process."""
 
-    def __init__(
-        self,
-        sock: socket.socket,
-        process: subprocess.Popen[bytes],
-        output: IO[bytes],
-        workdir: Path,
-        left: list[Iterator[None]],
-    ) -> None:
-        self.channel = self._socket = ticking(sock)
-        self._process = process
-        self._output = output
-        self._workdir = workdir
-        self._left = left
-        clock = ProcessClock(process.pid)
+    channel: socket.socket
+    _process: subprocess.Popen[bytes]
+    _output: IO[bytes]
+    _workdir: Path
+    _left: list[Iterator[None]]
+
+    def __post_init__(self) -> None:
+        ticking(self.channel)
+        clock = ProcessClock(self._process.pid)
         self.cpu_s, self.asleep = clock.cpu_s, clock.asleep
 
     def alive(self) -> bool:
@@ -423,7 +415,7 @@ class _ProcessHandle:
                 os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         code = self._process.wait()
-        self._socket.close()
+        self.channel.close()
         self._output.close()
         self._left.append(launch.removing(self._workdir))
         return Exit(max(code, 0), max(-code, 0))

@@ -168,7 +168,7 @@ class _WarmGrader(WarmGrader):
     _seat: socket.socket | None = None
     _retirement: threading.Timer | None = None
 
-    def _start(self) -> subprocess.Popen[bytes]:
+    def _launch(self) -> subprocess.Popen[bytes]:
         number, self._seat = _take_seat()
         return start_grader(msgspec.structs.replace(self.config, processor=number))
 

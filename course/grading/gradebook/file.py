@@ -18,6 +18,7 @@ import contextlib
 import hashlib
 import itertools
 import os
+import re
 import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
@@ -86,32 +87,24 @@ CREATE TABLE found (
     student TEXT NOT NULL, exercise TEXT NOT NULL, listed TEXT NOT NULL, row_sha256 TEXT,
     PRIMARY KEY (student, exercise)
 ) WITHOUT ROWID;
-CREATE TABLE waiting (student TEXT PRIMARY KEY, row_sha256 TEXT) WITHOUT ROWID;
 CREATE TABLE journal (
     number INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, kind TEXT NOT NULL,
     student TEXT NOT NULL, exercise TEXT NOT NULL, reason TEXT NOT NULL, before TEXT NOT NULL,
     after TEXT NOT NULL, row_sha256 TEXT
 );
+CREATE TABLE waiting (student TEXT PRIMARY KEY, row_sha256 TEXT) WITHOUT ROWID;
 """
-#: The columns of every table but the last, which is the digest of these.
-TABLES = {
-    "meta": ("key", "value"),
-    "runs": ("number", "kind", "started_at", "options"),
-    "exercises": ("id", "title", "max_points", "pass_share", "position"),
-    "students": ("student", "identity"),
-    "submissions": ("sha256", "files"),
-    "times": ("student", "exercise", "submission_sha256", "source", "at"),
-    "overrides": ("number", "student", "exercise", "score", "reason", "at", "sha256"),
-    "results": (
-        "number", "run", "student", "exercise", "submission_sha256", "grader_version", "seed", "graded_at",
-        "verdict", "verdict_sha256",
-    ),
-    "snapshots": ("sha256", "packed"),
-    "found": ("student", "exercise", "listed"),
-    "journal": ("number", "at", "who", "kind", "student", "exercise", "reason", "before", "after"),
-    "waiting": ("student",),
-}  # fmt: skip
-_OLD = ("meta", "runs", "exercises", "students", "submissions", "times", "overrides", "results")
+
+
+def _columns(statements: str) -> dict[str, tuple[str, ...]]:
+    """The columns of the tables that are made so, but for the last of each: the digest of the others."""
+    made = re.findall(r"CREATE TABLE (\w+) \((.+?)\)(?: WITHOUT ROWID)?;", statements, re.DOTALL)
+    column = re.compile(r"\b(?!row_sha256)(\w+) (?:TEXT|INTEGER|REAL|BLOB)\b")
+    return {name: tuple(column.findall(body)) for name, body in made}
+
+
+_OLD = _columns(_TABLES + _RESULTS)
+TABLES = _OLD | _columns(_SINCE_3)
 _DIGESTS = "".join(
     f"ALTER TABLE {name} ADD COLUMN row_sha256 TEXT;"
     f"UPDATE {name} SET row_sha256 = row_digest('{name}', {', '.join(TABLES[name])});"

@@ -29,7 +29,7 @@ import msgspec
 from course.catalog.models import Exercise
 from course.errors import UngradableError
 from course.grading.intake import downloads
-from course.grading.intake.downloads import is_folder_meant, is_meant
+from course.grading.intake.downloads import IS_CODE, is_folder_meant, is_meant
 from course.grading.pipes import Servant, limit_cpu, limit_memory, served, write_frame
 from course.grading.quiz import checked_record
 from course.handed_in import limits
@@ -184,7 +184,7 @@ def member_of(path: Path, name: str, meter: downloads.Meter) -> bytes:
 
     with path.open("rb") as handle:
         kind = downloads.kind_of(path.name, handle.read(512))
-    if kind in _TARS:
+    if kind in downloads.OPENERS:
         found = dict(_compressed(path, kind, meter))
         if name in found:
             return found[name]
@@ -193,9 +193,6 @@ def member_of(path: Path, name: str, meter: downloads.Meter) -> bytes:
             return _given(content)
     message = f"{quoted(path.name)} holds no {quoted(name)}."
     raise RefusedError("no_file", message, "Name a file that is in it.")
-
-
-_TARS = frozenset({"a tar archive", "a gzip archive", "a bzip2 archive", "an xz archive"})
 
 
 def _compressed(path: Path, kind: str, meter: downloads.Meter) -> list[tuple[str, bytes]]:
@@ -559,13 +556,13 @@ def _outlines(
         held = _given(_held(path))
         named = ((held.names.get(name, name), content) for name, content in held.files.items())
         files = [(name, _given(content)) for name, content in named if name not in skip]
-    elif kind in _TARS:
+    elif kind in downloads.OPENERS:
         files = _compressed(path, kind, meter)
     else:
         digest = hashlib.sha256(content).hexdigest()
         if len(content) > MAX_NOTEBOOK:
             yield "", digest, (), (), "", 0, "larger than 32 MB"
-        elif kind in _IS_CODE:
+        elif kind in IS_CODE:
             yield "", digest, *_defined(path.name, content, functions), kind
         else:
             yield "", digest, (), (), "", 0, kind
@@ -575,17 +572,13 @@ def _outlines(
     for name, found in files:
         what = downloads.kind_of(name, found)
         digest = hashlib.sha256(found).hexdigest()
-        yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), (), "", 0)), what
+        yield name, digest, *(_defined(name, found, functions) if what in IS_CODE else ((), (), "", 0)), what
 
 
 def _is_record(path: Path) -> bool:
     """Whether an archive has nothing but what ``course submit`` writes beside the files."""
     held = _held(path)
     return isinstance(held, _Held) and list(held.names) == [MANIFEST]
-
-
-#: What is read as code; "" is what its name says.
-_IS_CODE = frozenset({"", "a text", "a notebook"})
 
 
 def _defined(

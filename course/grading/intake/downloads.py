@@ -547,7 +547,10 @@ def _kind_of_text(suffix: str, content: bytes, head: bytes) -> str:
     return "" if suffix in {".py", ".ipynb"} else "a text"
 
 
-_OPENERS: dict[str, Callable[..., Any]] = {
+#: Kinds of files that are read as code; "" is what its name says.
+IS_CODE = frozenset({"", "a text", "a notebook"})
+#: What is decompressed, and by what; in each may be a tar archive.
+OPENERS: dict[str, Callable[..., Any]] = {
     "a tar archive": open,
     "a gzip archive": gzip.open,
     "a bzip2 archive": bz2.open,
@@ -587,7 +590,7 @@ def compressed(path: Path, kind: str, most: int, total: int, meter: Meter) -> It
         OSError: it is damaged.
     """
     try:
-        with _OPENERS[kind](path, "rb") as meter.source:
+        with OPENERS[kind](path, "rb") as meter.source:
             try:
                 with tarfile.open(fileobj=meter, mode="r|") as archive:  # type: ignore[call-overload]
                     yield from _in_tar(archive, most, total)
@@ -595,7 +598,7 @@ def compressed(path: Path, kind: str, most: int, total: int, meter: Meter) -> It
             except tarfile.ReadError:
                 if kind == "a tar archive":
                     raise
-        with _OPENERS[kind](path, "rb") as handle:
+        with OPENERS[kind](path, "rb") as handle:
             content: bytes = handle.read(most + 1)
     except TooMuchError:
         raise

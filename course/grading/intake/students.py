@@ -34,6 +34,7 @@ from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import ELSEWHERE, SubmittedAt
 from course.grading.intake.archives import RefusedError, reader
 from course.grading.intake.downloads import (
+    IS_CODE,
     Place,
     Student,
     is_clutter,
@@ -559,8 +560,6 @@ _CODE = 3 << 20
 #: ``integrators`` is 0.95, ``collision`` for ``integrators`` 0.3.
 _ALIKE = 0.75
 _SHOWN = 4
-#: Kinds of files that are read as code.
-_READABLE = ("", "a text", "a notebook")
 
 
 class Candidate(msgspec.Struct, frozen=True):
@@ -724,31 +723,28 @@ def found_for(
         if mine or alike or one in asked:
             # What cannot be read as code can be named, and not proposed.
             worth, alike = len(written), alike + 0.1 * bool(mine)
-            if one.kind not in _READABLE or (outside and lies_aside(one.name)):
+            if one.kind not in IS_CODE or (outside and lies_aside(one.name)):
                 worth, alike = 0, 0.0
             ranked.append((worth, alike, msgspec.structs.replace(one, defines=mine, written=written)))
-    ranked.sort(
-        key=lambda item: (
-            -item[0],
-            -item[1],
-            not item[2].name.casefold().endswith(HANDED_IN),
-            _is_notebook(item[2]),
-            item[2].name,
-        )
-    )
+    ranked.sort(key=lambda item: (-item[0], -item[1], *_by_name(item[2])))
     most = ranked[0][0] if ranked else 0
     # A notebook and a module with its code are one.
-    modules = {item[2].code for item in ranked if item[0] and not _is_notebook(item[2])}
+    modules = {one.code for worth, _, one in ranked if worth and not _is_notebook(one)}
     distinct = {
-        item[2].sha256: item[0] or item[1]
-        for item in reversed(ranked)
-        if not (_is_notebook(item[2]) and item[2].code in modules)
+        one.sha256: worth or alike
+        for worth, alike, one in reversed(ranked)
+        if not (_is_notebook(one) and one.code in modules)
     }
     best = most or max(distinct.values(), default=0.0)
     # Two equally good files that differ: the grader must not decide which one counts.
     clear = best > 0 and list(distinct.values()).count(best) == 1
     found = [one for *_, one in ranked]
     return tuple(msgspec.structs.replace(one, proposed=clear and one is found[0]) for one in found)
+
+
+def _by_name(one: Candidate) -> tuple[bool, bool, str]:
+    """The order of files that are worth the same."""
+    return not one.name.casefold().endswith(HANDED_IN), _is_notebook(one), one.name
 
 
 def _is_notebook(one: Candidate) -> bool:

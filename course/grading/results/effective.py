@@ -16,7 +16,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Self
 
 import msgspec
 
@@ -97,6 +96,11 @@ class Effective:
         return self.result.verdict
 
     @property
+    def seconds(self) -> float:
+        """Wall time of its checks, in s."""
+        return sum(check.duration_ms for check in self.verdict.checks) / 1e3
+
+    @property
     def missing(self) -> bool:
         """Whether an enrolled student handed in nothing, and no decision was made about it."""
         return self.verdict.state == MISSING and self.override is None
@@ -164,18 +168,6 @@ class Results:
             self._overrides[self._owner(override.student), override.exercise] = override
         self._times: dict[tuple[str, str], list[tuple[str, str, float | None]]] = {}
         self.take_in(book.times())
-
-    @classmethod
-    def open(cls, out: Path) -> Self:
-        """The results in the folder of a grading run; close ``book`` when done.
-
-        Raises:
-            NotFoundError: there is no gradebook.
-            UsageError: a run is writing it.
-            MissingCapabilityError: a newer version wrote it.
-            IntegrityError: it is damaged.
-        """
-        return cls(Gradebook(out / "gradebook.sqlite"))
 
     def take_in(self, times: Iterable[SubmittedAt]) -> None:
         for time in times:

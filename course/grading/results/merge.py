@@ -48,16 +48,13 @@ def merged(results: Results, new: Roster, *, lasting: bool = False) -> Merged:
     pairs = dict(_pairs(old, list(_stages(results, new, known))))
     earlier = {pairs[person.student].student: person for person in old.people if person.student in pairs}
     own, people = "student" in new.columns, []
+    worksheet = new.columns.get("moodle_key", "moodle_key") != "moodle_key"
     for row in new.people:
         before = earlier.get(row.student)
         if before is not None:
             student = _called(before, row, results, graded, own=own, known=before.student in known)
             joined = _joined(before, row, new, student)
-            if (
-                lasting
-                and new.columns.get("moodle_key", "moodle_key") != "moodle_key"
-                and not before.moodle_key.isdigit()
-            ):
+            if lasting and worksheet and not before.moodle_key.isdigit():
                 joined = msgspec.structs.replace(joined, moodle_key=before.moodle_key or joined.moodle_key)
             people.append(joined)
         else:
@@ -71,14 +68,13 @@ def merged(results: Results, new: Roster, *, lasting: bool = False) -> Merged:
 
 def _stages(results: Results, new: Roster, known: dict[str, str]) -> Iterator[Stage]:
     """How the rows of a stored person are looked for, the surest way first."""
+
+    def by_work(person: Person) -> list[Person]:
+        name = known.get(person.student)
+        return new.rows(name, results.downloads.get(name)) if name is not None else []
+
     yield lambda person: new.having("student", person.student)
-    yield (
-        lambda person: (
-            new.rows(known[person.student], results.downloads.get(known[person.student]))
-            if person.student in known
-            else []
-        )
-    )
+    yield by_work
     for name in _IDS:
         yield lambda person, name=name: new.having(name, getattr(person, name))  # type: ignore[misc]
     yield lambda person: new.rows(person.student)

@@ -205,11 +205,8 @@ class Roster:
             columns = _DOWNLOAD.get(source, _FOLDER)
             tried = ", ".join(self.columns[name] for name in columns if name in self.columns)
             what = f"The {source.capitalize()} id of a submission" if source else "The name of a folder"
-            told.append(
-                f"{what} was looked for in {tried}; it has to be in exactly one row."
-                if tried
-                else f"{what} is in none of these."
-            )
+            found = f"was looked for in {tried}; it has to be in exactly one row"
+            told.append(f"{what} {found if tried else 'is in none of these'}.")
         return one_line(" ".join(told))
 
     def dump(self) -> str:

@@ -7,9 +7,6 @@ it kills it is reported as our fault. A grader that hangs is ended at a deadline
 import contextlib
 import os
 import subprocess
-import sys
-import threading
-import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
@@ -21,7 +18,7 @@ from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.catalog.models import LONGEST
 from course.errors import CourseError, InternalError
 from course.grading.intake.students import Entry
-from course.grading.pipes import path_with, read_frame, write_frame
+from course.grading.pipes import Servant, launched, path_with, write_frame
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
 from course.isolation.launch import ONE_THREAD, keep_private, sweep_after_the_dead
@@ -38,7 +35,7 @@ KILLED_ITS_GRADER = Problem(
     f"The grader died {MAX_TRIES} times on this submission.",
     "Report this; the submission is marked for regrading.",
 )
-_TICK_S = 0.5
+_GRADER = "course.grading.running.grader"
 
 
 @dataclass(frozen=True)
@@ -72,30 +69,32 @@ def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> It
 def start_grader(config: Config) -> subprocess.Popen[bytes]:
     """A grader process, told how to grade. Its first answer says that it has started."""
     keep_private()  # all messages to and from graders pass through here
-    # -P: the folder the command is run in, which may be a student's, never becomes importable.
-    command = [sys.executable, "-P", "-m", "course.grading.running.grader"]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
     graders = in_use(config.terms.graders)
     if graders is None:
         raise InternalError("The snapshot that is to judge is not unpacked here.")
     environment |= ONE_THREAD | {"PYTHONPATH": path_with(graders.folder)}
     environment[ENVIRONMENT_VARIABLE] = str(graders.catalog.content.root)
-    process = subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
-    )
+    process = launched(_GRADER, environment=environment)
     assert process.stdin is not None
     with contextlib.suppress(BrokenPipeError):
         write_frame(process.stdin, config)
     return process
 
 
-class WarmGrader:
-    """A grader process, started when there is something to grade and replaced when it dies."""
+class WarmGrader(Servant):
+    """A grader process, started when there is something to grade and replaced when it dies.
+
+    It is killed once it takes longer than a submission may by its own deadlines.
+    """
+
+    tries = MAX_TRIES
+    cannot_start = "A grader process cannot start; what it printed is above."
 
     def __init__(self, config: Config) -> None:
+        longest = WALL * LONGEST * (BUDGET_S + SEARCH_S + config.terms.timeout) + 30.0
+        super().__init__(_GRADER, wall_s=longest)
         self.config = config
-        self._process: subprocess.Popen[bytes] | None = None
-        self._over = False
 
     def answer(self, job: Job) -> Answer:
         """The grader's answer; an empty one if this submission killed every grader it was given to.
@@ -104,71 +103,15 @@ class WarmGrader:
             InternalError: no grader can be started here.
         """
         for _ in range(MAX_TRIES):
-            answer = _answer_to(job, self._said(self._process or self._started(), job))
-            if answer is not None:
-                return answer
-            self.close()
+            with contextlib.suppress(msgspec.MsgspecError):  # no frame is none of an answer either
+                answer = msgspec.msgpack.decode(self.ask(job) or b"", type=Answer)
+                if answer.is_about(job):
+                    return answer
+            self.close()  # also one that answers another question: something else may have answered
         return Answer(number=job.number, sha256=Submission(job.files).sha256)
 
-    def _started(self) -> subprocess.Popen[bytes]:
-        for _ in range(MAX_TRIES):
-            if self._over:
-                break
-            process = self._process = self._start()
-            if self._said(process) is not None:
-                return process
-            self.close()
-        raise InternalError("A grader process cannot start; what it printed is above.")
-
-    def _start(self) -> subprocess.Popen[bytes]:
+    def _launch(self) -> subprocess.Popen[bytes]:
         return start_grader(self.config)
-
-    def _said(self, process: subprocess.Popen[bytes], job: Job | None = None) -> bytes | None:
-        """What a process says to a job, or first of all; None once it is dead.
-
-        One that hangs, longer than a submission may take by its own deadlines, or was stopped, is killed.
-        """
-        until = time.monotonic() + WALL * LONGEST * (BUDGET_S + SEARCH_S + self.config.terms.timeout) + 30.0
-        heard = threading.Event()
-
-        def watch() -> None:
-            while not heard.wait(_TICK_S):
-                if self._over or time.monotonic() > until or _is_stopped(process.pid):
-                    process.kill()  # its pipes close
-
-        threading.Thread(target=watch, daemon=True).start()
-        assert process.stdin is not None
-        assert process.stdout is not None
-        try:
-            with contextlib.suppress(BrokenPipeError):  # it died: reading from it will say so
-                if job is not None:
-                    write_frame(process.stdin, job)
-            return read_frame(process.stdout)
-        finally:
-            heard.set()
-
-    def end(self) -> None:
-        """Have the thread that waits for an answer wait no longer, and start no other process."""
-        self._over = True
-        process = self._process
-        if process is not None:
-            process.kill()
-
-    def close(self, patience_s: float = 0.0) -> None:
-        """End the process, which has so many seconds to clean up; the next job gets another one."""
-        process, self._process = self._process, None
-        if process is None:
-            return
-        with contextlib.suppress(OSError):
-            if process.stdin:
-                process.stdin.close()  # it ends at end of file, its sandbox with it
-        try:
-            process.wait(patience_s)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        if process.stdout:
-            process.stdout.close()
 
 
 class Graders:
@@ -233,35 +176,11 @@ class Graders:
         sweep_after_the_dead()  # nobody comes after the last grader, should that one have been killed
 
 
-def _is_stopped(pid: int) -> bool:
-    """Whether a signal stopped that process: a submission at L1 may send one, and nothing would wake it."""
-    if not hasattr(os, "waitid"):
-        return False
-    with contextlib.suppress(ChildProcessError):
-        return os.waitid(os.P_PID, pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
-    return False
-
-
 def job_of(entry: Entry, version: str) -> Job:
     """What a grader of that version is asked about an entry that has a submission."""
     assert entry.submission is not None
     files = dict(entry.submission.files)
     return Job(entry.exercise.id, files, version, only=entry.only, asks=entry.asks)
-
-
-def _answer_to(job: Job, frame: bytes | None) -> Answer | None:
-    """The answer in a grader's frame; None if there is none, or one to something else than was asked.
-
-    A grader that answers another question than it was asked counts as dead, because something else may have
-    answered.
-    """
-    if frame is None:
-        return None
-    try:
-        answer = msgspec.msgpack.decode(frame, type=Answer)
-    except msgspec.MsgspecError:
-        return None
-    return answer if answer.is_about(job) else None
 
 
 def as_error(problem: Problem, exit_code: int) -> CourseError:

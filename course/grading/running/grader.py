@@ -186,15 +186,11 @@ class _Grader:
                 session = GradingSession(
                     exercise, self._catalog, scope="full", terms=terms, processor=processor
                 )
-                try:
-                    _check_worth(exercise, math.fsum(check.points for check in session.checks))
-                except ContentError:
-                    session.close()
-                    raise
-            except ContentError as fault:
+                self._sessions[exercise.id] = session
+                _check_worth(exercise, math.fsum(check.points for check in session.checks))
+            except ContentError as fault:  # also of its worth: no submission gets to that session
                 self._broken[exercise.id] = fault
                 raise
-            self._sessions[exercise.id] = session
         return self._sessions[exercise.id]
 
     def _fault(self, fault: ContentError) -> Problem:

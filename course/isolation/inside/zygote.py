@@ -8,7 +8,6 @@ the course.
 
 from __future__ import annotations
 
-import array
 import contextlib
 import ctypes
 import errno
@@ -140,9 +139,10 @@ def _answer(control: socket.socket, own_namespace: int) -> tuple[list[int], str]
     """One request of the grader's: in a new fork its descriptors and folder, here None."""
     from course_worker.isolation.inside import lockdown
 
-    request, descriptors = _request(control)
-    if request is None:
+    message, descriptors, _, _ = socket.recv_fds(control, 4096, 2)
+    if not message:
         os._exit(0)
+    request = json.loads(message)
     if "reap" in request:
         _reap(control, request["reap"])
         return None
@@ -226,19 +226,8 @@ def _keep_only(sock: int, output: int, rules: int) -> None:
         os.closerange(len(kept), os.sysconf("SC_OPEN_MAX"))
 
 
-def _request(control: socket.socket) -> tuple[dict[str, Any] | None, list[int]]:
-    message, ancillary, _, _ = control.recvmsg(4096, socket.CMSG_LEN(16))
-    descriptors = array.array("i")
-    for level, kind, data in ancillary:
-        if level == socket.SOL_SOCKET and kind == socket.SCM_RIGHTS:
-            descriptors.frombytes(data[: len(data) - len(data) % descriptors.itemsize])
-    return (json.loads(message) if message else None), list(descriptors)
-
-
-def _reply(control: socket.socket, message: dict[str, Any], descriptor: int | None = None) -> None:
-    held = array.array("i", [] if descriptor is None else [descriptor])
-    rights = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, held)] if held else []
-    control.sendmsg([json.dumps(message).encode()], rights)
+def _reply(control: socket.socket, message: dict[str, Any], *descriptors: int) -> None:
+    socket.send_fds(control, [json.dumps(message).encode()], descriptors)
 
 
 if __name__ == "__main__":

@@ -91,15 +91,13 @@ def duration(seconds: float) -> str:
 def score_bins(scores: Sequence[float], most: float) -> tuple[list[Bin], bool]:
     """Scores counted for a histogram; and whether each bar stands for one score instead of a tenth."""
     whole = most == int(most) and 0 < most <= _FEW and all(score == int(score) for score in scores)
-    if whole:
-        counts = [0] * (int(most) + 1)
-        for score in scores:
-            counts[min(max(int(score), 0), int(most))] += 1
-        return [Bin(f"{at} points", str(at), count) for at, count in enumerate(counts)], True
-    counts = [0] * 10
+    per_bar = 1.0 if whole else most / 10
+    counts = [0] * (int(most) + 1 if whole else 10)
     for score in scores:
-        share = score / most if most else 0.0
-        counts[min(max(int(share * 10 + 1e-9), 0), 9)] += 1
+        at = int(score / per_bar + 1e-9) if per_bar else 0
+        counts[min(max(at, 0), len(counts) - 1)] += 1
+    if whole:
+        return [Bin(f"{at} points", str(at), count) for at, count in enumerate(counts)], True
     words = [f"{10 * at} to under {10 * at + 10} %" for at in range(9)] + ["90 to 100 %"]
     return [Bin(words[at], str(10 * at), count) for at, count in enumerate(counts)], False
 

@@ -128,7 +128,7 @@ class ExerciseTally:
             self.ungraded += 1
         if verdict.state == "graded":
             if not self.is_quiz:
-                self.seconds.append(seconds_of(effective))
+                self.seconds.append(effective.seconds)
             self._take_checks(verdict.checks)
 
     def _take_checks(self, checks: Sequence[CheckResult]) -> None:
@@ -201,6 +201,7 @@ class Tally:
         untimed: number of results without a trusted submission time.
         flagged: number of results that the download calls late, without saying by how much.
         elsewhere: graded without functions that another file of the student's has.
+        slowest: those whose checks took longest.
     """
 
     def __init__(self, exercises: Iterable[GradedExercise]) -> None:
@@ -216,8 +217,8 @@ class Tally:
         self.untimed = 0
         self.flagged = 0
         self.elsewhere = CappedList()
+        self.slowest = CappedList(_SLOWEST, by=lambda effective: effective.seconds)
         self.first, self.last = "", ""
-        self._slowest: list[tuple[float, str, str]] = []
 
     def take(self, found: Sequence[Effective]) -> None:
         self.students += 1
@@ -246,16 +247,9 @@ class Tally:
             self.troubled.take(effective)
             self.reasons[effective.exercise, verdict.state, verdict.error.code] += 1
         elif not self.exercises[effective.exercise].is_quiz:
-            heapq.heappush(self._slowest, (seconds_of(effective), effective.student, effective.exercise))
-            if len(self._slowest) > _SLOWEST:
-                heapq.heappop(self._slowest)
+            self.slowest.take(effective)
         self.first = min(filter(None, (self.first, at)), default="")
         self.last = max(self.last, at)
-
-    @property
-    def slowest(self) -> list[tuple[float, str, str]]:
-        """Seconds, student and exercise of the submissions whose checks took longest, the longest first."""
-        return sorted(self._slowest, reverse=True)
 
     @property
     def hardest(self) -> list[TaskTally]:
@@ -268,8 +262,3 @@ class Tally:
         """Diagnoses by the number of students, the largest first."""
         found = [diagnosis for item in self.exercises.values() for diagnosis in item.diagnoses.values()]
         return sorted(found, key=lambda item: (-item.students, item.exercise, item.code))
-
-
-def seconds_of(effective: Effective) -> float:
-    """Wall time of a submission's checks, in s."""
-    return sum(check.duration_ms for check in effective.verdict.checks) / 1e3

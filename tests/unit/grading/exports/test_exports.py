@@ -17,6 +17,7 @@ from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.grading.exports.formats import FORMATS, export
 from course.grading.exports.grades import is_safe, number, replacing, safe_cell, utc
 from course.grading.exports.selection import ExportOptions
+from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Override, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Column, Person, Roster
@@ -60,7 +61,7 @@ def class_of_everybody(tmp_path_factory):
 
 @pytest.fixture
 def results(class_of_everybody):
-    results = Results.open(class_of_everybody)
+    results = Results(Gradebook(class_of_everybody / "gradebook.sqlite"))
     results.roster = Roster(
         tuple(
             Person(name, name, f"{at}@x.org", str(100 + at), f"sis-{at}", "A", f"key{at}")

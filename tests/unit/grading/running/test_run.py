@@ -12,6 +12,7 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.locate import chosen
 from course.errors import InternalError, MissingCapabilityError, UsageError
+from course.grading import pipes
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result
 from course.grading.intake import archives
@@ -149,16 +150,16 @@ def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
 def test_a_verdict_is_taken_from_who_was_asked_for_it(tmp_path, monkeypatch, unpacked, doubling, solution):
     """Whoever writes to the pipe of a grader, a frame too many must not move the next verdicts by one."""
     make_class(tmp_path / "class", solution, 3)
-    read, forged = batch.read_frame, {}
+    read, forged = pipes.read_frame, {}
     forgeries = [
         lambda perfect: msgspec.structs.replace(perfect, number=perfect.number + 1),
         lambda _: 7,
         lambda perfect: msgspec.structs.replace(perfect, sha256="f" * 64),
     ]
 
-    def first_a_forgery(source):
+    def first_a_forgery(*source):
         """Of the answers about each student."""
-        frame = read(source)
+        frame = read(*source)
         answer = msgspec.msgpack.decode(frame, type=Answer) if frame else None
         if answer is None or answer.verdict is None or answer.sha256 in forged:
             return frame
@@ -166,7 +167,7 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(tmp_path, monkeypatch, unp
         forged[answer.sha256] = forgeries[len(forged)](msgspec.structs.replace(answer, verdict=verdict))
         return msgspec.msgpack.encode(forged[answer.sha256])
 
-    monkeypatch.setattr(batch, "read_frame", first_a_forgery)
+    monkeypatch.setattr(pipes, "read_frame", first_a_forgery)
     entries = read_class(tmp_path / "class", [doubling], required=True)
     found = list(grade_all(entries, Terms(at_least="L1", graders=unpacked)))
     assert len(forged) == len(forgeries)
@@ -179,7 +180,7 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(tmp_path, monkeypatch, unp
 def test_a_submission_that_stops_its_grader_holds_nobody_up(
     tmp_path, monkeypatch, unpacked, doubling, solution
 ):
-    monkeypatch.setattr(batch, "_TICK_S", 0.05)
+    monkeypatch.setattr(pipes, "_TICK_S", 0.05)
     monkeypatch.setattr(batch, "MAX_TRIES", 1)  # each takes a second
     make_class(tmp_path / "class", solution, 3)
     stop = b"\nimport os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"

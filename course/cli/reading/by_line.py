@@ -7,8 +7,8 @@ import bisect
 import contextlib
 import itertools
 import re
-import threading
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import wait
 from pathlib import Path
 
 from course.catalog import blocks as b
@@ -68,10 +68,8 @@ class LineReader:
             self._events = lesson_events(store, lesson.id, catalog.syllabus.split)
         self._progress = InProgress(self._script, self._events, self._write, catalog.version)
         self._files: dict[int, Path] = {}  # by number of the cell that the student changes in it
-        self._bench = Bench(self._progress, self._ran)
+        self._bench = Bench(self._progress)
         self._kept = False  # whether the last event was recorded
-        self._over = threading.Event()
-        self._gave: CellOutput | None = None
         self._does: dict[str, Callable[[str, int], int | None]] = {
             "b": lambda _, page: max(0, page - 1),
             "t": self._contents,
@@ -246,24 +244,17 @@ class LineReader:
             except OSError as error:
                 self._say(f"{path} cannot be read: {error.strerror}.")
                 return
-        self._over.clear()
-        self._bench.start(cell)
+        running = self._bench.start(cell)
+        assert running is not None  # one at a time
         try:
-            if not self._over.wait(_PATIENCE):
+            if not wait([running], _PATIENCE).done:
                 self._say(f"Cell {cell.number} runs; Ctrl-C stops it.")
-            self._over.wait()
+            gave = running.result()
         except KeyboardInterrupt:
             self._bench.interrupt()
-            self._over.wait()
-        if self._gave is not None:
-            self._progress.ran(cell, self._progress.cell(cell).source, self._gave.printed, self._gave.error,
-                               self._gave.seconds)  # fmt: skip
-            self._tell(cell, self._gave)
-
-    def _ran(self, _cell: Cell, _source: str, gave: CellOutput) -> None:
-        """A cell has ended (called in the cells' thread)."""
-        self._gave = gave
-        self._over.set()
+            gave = running.result()
+        self._progress.ran(cell, self._progress.cell(cell).source, gave.printed, gave.error, gave.seconds)
+        self._tell(cell, gave)
 
     def _tell(self, cell: Cell, gave: CellOutput) -> None:
         if gave.earlier:

@@ -161,18 +161,12 @@ def _printer(
     catalog: Catalog, script: Script, console: Console, figures: Path | None, text: io.StringIO | None
 ) -> Printer:
     """What prints a lesson on the console, or into ``text`` as ``--plain`` shows it."""
-    if text is None:
-        return printer(
-            catalog,
-            script,
-            console.rich(),
-            plain=console.plain,
-            figures_dir=figures,
-            width=console.width,
-            wraps=console.wraps,
+    shown_on = console.rich()
+    if text is not None:
+        shown_on = RichConsole(
+            file=text, width=MAX_WIDTH, no_color=True, markup=False, emoji=False, highlight=False
         )
-    quiet = RichConsole(file=text, width=MAX_WIDTH, no_color=True, markup=False, emoji=False, highlight=False)
-    return printer(catalog, script, quiet, plain=True, figures_dir=figures)
+    return printer(catalog, script, shown_on, plain=console.plain, figures_dir=figures, wraps=console.wraps)
 
 
 def _section(script: Script, slug: str) -> Section:

@@ -538,20 +538,18 @@ def printer(
     *,
     plain: bool = False,
     figures_dir: Path | None = None,
-    width: int | None = None,
     wraps: bool = False,
 ) -> Printer:
     """What prints a lesson on one console.
 
     Args:
         plain: one fact a line, no boxes, formulae in words, figures and diagrams as their descriptions.
-        width: columns to use; the console's own if left out.
         wraps: plain lines wrap between words.
     """
     # A terminal that cannot show the drawings and formulae gets what a screen reader gets.
     if plain or not console.encoding.lower().startswith("utf"):
         return PlainPrinter(catalog, script, console, figures_dir, wraps)
-    return FancyPrinter(catalog, script, console, figures_dir, width or console.width)
+    return FancyPrinter(catalog, script, console, figures_dir, console.width)
 
 
 def paginate(blocks: tuple[b.Block, ...]) -> tuple[tuple[b.Block, ...], ...]:

@@ -68,7 +68,7 @@ COMMANDS: dict[str, Entry] = {
     "hint": Entry("work.hinting", "hint", PRACTISE, "Show the next hint.", "integrators"),
     "diff": Entry("work.changing", "diff", PRACTISE, "Show what changed since the stub.", "integrators"),
     "report": Entry(
-        "work.reporting", "report", PRACTISE, "Show what your code does, with figures.", "sim-to-real"
+        "work.checking", "report", PRACTISE, "Show what your code does, with figures.", "sim-to-real"
     ),
     "reflect": Entry(
         "work.hinting", "reflect", PRACTISE, "Answer in prose, and grade your answer.", "sim-to-real"

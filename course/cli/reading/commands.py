@@ -20,9 +20,8 @@ from course.cli.home.advice import after_lesson
 from course.cli.home.overview import day, lesson_states, warm_up_states
 from course.cli.home.replies import LessonState, WarmUpState
 from course.cli.reading.lesson import Printer, printer
-from course.cli.work.changing import put
+from course.cli.work.changing import Start, put
 from course.cli.work.checking import check as check_work
-from course.cli.work.replies import Start
 from course.errors import CourseError, NotFoundError, UsageError
 from course.printable import counted
 from course.progress.history import Standing

@@ -23,8 +23,7 @@ from course.catalog.reading import read_document
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.replies import Envelope
-from course.cli.work.checking import reply_to
-from course.cli.work.replies import Check
+from course.cli.work.checking import Check, reply_to
 from course.cli.work.verdict import show_verdict
 from course.errors import InternalError
 from course.figures.described import Panel, Plot, Series

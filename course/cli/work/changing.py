@@ -9,19 +9,63 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
+import msgspec
+
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, write
 from course.cli.frame.options import ExerciseName, OneExercise, argument, exercise_ids, option
-from course.cli.frame.replies import Backup, FileReply, NextStep
+from course.cli.frame.replies import Backup, Envelope, FileReply, NextStep
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work, name_of_work
-from course.cli.work.replies import Change, Diff, Reset, Start, Update
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.handed_in.limits import read_notebook
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.printable import counted
 from course.progress.workspace import same_text, write_atomically
+
+
+class Diff(Envelope, tag="course.diff/1", frozen=True, kw_only=True):
+    exercise: str
+    path: str
+    changed: bool
+    added: int
+    removed: int
+    diff: str
+
+
+class Reset(Envelope, tag="course.reset/1", frozen=True, kw_only=True):
+    exercise: str
+    changed: bool
+    backups: tuple[Backup, ...]
+    next: NextStep
+
+
+class Change(msgspec.Struct, frozen=True):
+    """The action of ``update`` on one file.
+
+    ``action`` is "replace" (it was never edited), "beside" (it was: the new one is at ``new``), "merge" (a
+    notebook: newer text was put around the student's work), "current" (already so) or "missing" (removed by
+    the student, and left so).
+    """
+
+    path: str
+    action: str
+    new: str | None = None
+    backup: str | None = None
+
+
+class Update(Envelope, tag="course.update/1", frozen=True, kw_only=True):
+    dry_run: bool
+    from_version: str
+    to_version: str
+    changes: tuple[Change, ...]
+
+
+class Start(Envelope, tag="course.start/1", frozen=True, kw_only=True):
+    exercise: str
+    files: tuple[FileReply, ...]
+    next: NextStep
 
 
 def diff(exercise: ExerciseName = None) -> int:

@@ -248,9 +248,8 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     """Both motions, where the terminal can show a picture."""
     if not console.draws:
         return
-    from course.cli.frame.pictures import half_blocks
+    from course.cli.frame.pictures import in_half_blocks
     from course.figures.plots import draw
-    from course.figures.terminal import in_cells
 
     wide = console.width >= _WIDE
     columns, rows = console.width, _PANEL_ROWS * (1 if wide else 2)
@@ -268,8 +267,7 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     )
     plot = Plot("", panels, columns=2 if wide else 1)
     with console.working("Drawing"):
-        drawn = in_cells(lambda: draw(plot), columns, rows)
-    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
-    for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
+        lines = in_half_blocks(lambda: draw(plot), columns, rows)
+    for line in lines:
         console.rich().print(line)
     console.line(("Grey: the motion of the other panel.", "dim"))

@@ -22,7 +22,7 @@ from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.handed_in.limits import read_notebook
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.printable import counted
-from course.progress.workspace import same_text, write_atomically
+from course.progress.workspace import same_text
 
 
 class Diff(Envelope, tag="course.diff/1", frozen=True, kw_only=True):
@@ -128,17 +128,15 @@ def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not
     if why_not:
         console.line(why_not)
         return console.answer(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
-    backups = []
-    if there:
-        copy = here.workspace.backup(path, "reset")
-        console.line(f"Your version is kept at {here.workspace.shown(copy)}.")
-        backups.append(Backup(path=str(path), backup=str(copy)))
-    write_atomically(path, stub)
+    kept = write(path, stub, why="reset").backup
+    if kept:
+        console.line(f"Your version is kept at {here.workspace.shown(Path(kept.backup))}.")
     if path.name == chosen.module:
         here.workspace.remember(chosen.place, chosen.module, stub)
+    backups = (kept,) if kept else ()
     here.record("reset", chosen.id, {"backups": [item.backup for item in backups]})
     console.line(f"{shown} is the stub again.")
-    return here.answer(Reset(exercise=chosen.id, changed=True, backups=tuple(backups), next=NextStep(step)))
+    return here.answer(Reset(exercise=chosen.id, changed=True, backups=backups, next=NextStep(step)))
 
 
 def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would be done.")] = False) -> int:

@@ -117,7 +117,11 @@ def lesson(
     if section is not None:
         shown.blocks(script.blocks[section.start : section.end])
     elif paged:
-        whole = _read_by_line(console, here, catalog, chosen, shown)
+        from course.cli.reading.by_line import LineReader
+        from course.isolation.probe import kept_sandboxes
+
+        with kept_sandboxes():  # its tasks are checked one after the other
+            whole = LineReader(console, here, catalog, chosen, shown).read()
     else:
         shown.head()
         shown.blocks(script.blocks)
@@ -206,16 +210,6 @@ def _print_code(console: Console, script: Script, number: int) -> int:
     source = cells[number - 1].source
     console.raw(f"{source}\n")
     return console.answer(_reply(script.lesson, source))
-
-
-def _read_by_line(
-    console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, shown: Printer
-) -> bool:
-    from course.cli.reading.by_line import LineReader
-    from course.isolation.probe import kept_sandboxes
-
-    with kept_sandboxes():  # its tasks are checked one after the other
-        return LineReader(console, here, catalog, chosen, shown).read()
 
 
 def _after(here: Here | None, chosen: Lesson, *, read: bool) -> str:

@@ -78,7 +78,7 @@ def diff(exercise: ExerciseName = None) -> int:
     work = chosen_work(here, *asked_for(here, exercise))
     report_source_file(console, here, work)
     name = work.path
-    before, after = _lines(work.stub), _lines(work.source)
+    before, after = (one.decode("utf-8-sig", "replace").splitlines() for one in (work.stub, work.source))
     rows = list(difflib.unified_diff(before, after, f"stub/{name}", name, lineterm=""))
     added = sum(row.startswith("+") for row in rows[2:])
     removed = sum(row.startswith("-") for row in rows[2:])
@@ -225,10 +225,6 @@ def _put(path: Path, beside: str, new: bytes, action: str, *, dry_run: bool) -> 
     to = path.with_name(beside) if action == "beside" else path
     kept = None if dry_run else write(to, new, why="update").backup
     return Change(str(path), action, str(to) if to != path else None, kept.backup if kept else None)
-
-
-def _lines(data: bytes) -> list[str]:
-    return data.decode("utf-8-sig", "replace").splitlines()
 
 
 # ---

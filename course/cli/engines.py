@@ -250,15 +250,13 @@ def _show(console: Console, comparison: Comparison, findings: Sequence[str]) -> 
             _scenario(console, scenario, rows, best)
     if best and not console.quiet:
         console.line("best: nearest the truth, or where more is better the most; ties within half its range.")
-    said: set[tuple[str, str]] = set()
-    for row in comparison.rows:  # those without a number, and why
-        if row.status in ("ok", "not_installed", "not_applicable"):
-            continue
-        where = "" if row.status == "unavailable" else f" in {row.scenario} ({row.setting})"
-        text = f"{ENGINES[row.engine].name} {_STATUS[row.status]}{where}: {row.message}"
-        if (row.engine, text) not in said:
-            said.add((row.engine, text))
-            console.line(text)
+    said: dict[str, None] = {}
+    for row in comparison.rows:  # those without a number, and why, each once
+        if row.status not in ("ok", "not_installed", "not_applicable"):
+            where = "" if row.status == "unavailable" else f" in {row.scenario} ({row.setting})"
+            said[f"{ENGINES[row.engine].name} {_STATUS[row.status]}{where}: {row.message}"] = None
+    for text in said:
+        console.line(text)
     for state in comparison.engines:
         if state.version is None:
             console.line(f"{state.name}: {state.missing}{f': {state.command}' if state.command else '.'}")

@@ -21,20 +21,21 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import msgspec
+
 from course.catalog.models import Exercise
 from course.cli.frame.app import again
 from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.options import Verbose, argument, exercise_ids
-from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep, filled
+from course.cli.frame.replies import Envelope, ErrorBody, ErrorReply, NextStep, filled
 from course.cli.home.advice import hint_is_due, is_done, next_in_course, next_step, next_task, why
 from course.cli.home.replies import Go
 from course.cli.reading.commands import show_text
 from course.cli.work.changing import put, tell_length
-from course.cli.work.checking import curve_replies, reply_to, show_curve
+from course.cli.work.checking import Check, CheckOrError, curve_replies, reply_to, show_curve
 from course.cli.work.chosen import NOTEBOOK, asked_for, chosen_work, is_edited
 from course.cli.work.hinting import give_hint
-from course.cli.work.replies import Check, Watch, WatchRun
 from course.cli.work.verdict import is_unwritten, show_changes, show_loading, show_verdict
 from course.errors import INTERRUPTED, CourseError, UngradableError
 from course.handed_in import attempts
@@ -43,6 +44,32 @@ from course.scoring.verdict import Verdict
 
 if TYPE_CHECKING:
     from course.scoring.judging.session import GradingSession
+
+
+class WatchRun(msgspec.Struct, frozen=True):
+    """One verdict of a watch. ``at`` is UTC; ``latency_ms`` runs from noticing the save to the verdict.
+
+    ``exercise`` is the one that was checked: without a name, a watch goes from one to the next.
+    """
+
+    at: str
+    state: str
+    score: float
+    max_score: float
+    passed: bool
+    latency_ms: float
+    exercise: str = ""
+
+
+class Watch(Envelope, tag="course.watch/1", frozen=True, kw_only=True):
+    """Printed when the watch ends. ``exercise`` is the one that was watched last."""
+
+    refers_to = (Check,)
+
+    exercise: str
+    runs: tuple[WatchRun, ...]
+    last: CheckOrError | None = None
+
 
 # ---
 # Single key presses while a command waits or works, on a terminal only.

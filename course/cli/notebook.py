@@ -19,8 +19,7 @@ from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_cat
 from course.cli.frame.options import Verbose, argument, choice_of, exercise_ids, notebook_ids, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Backup, Envelope
-from course.cli.work.checking import reply_to
-from course.cli.work.replies import Check
+from course.cli.work.checking import Check, reply_to
 from course.cli.work.verdict import show_verdict
 from course.errors import NotFoundError, UngradableError, UsageError
 from course.extras import require

@@ -24,7 +24,7 @@ import typer
 
 from course import __version__
 from course.cli.frame.console import Console, current, install
-from course.cli.frame.options import Line, global_options
+from course.cli.frame.options import Line, global_options, option
 from course.cli.frame.registry import HOME, build, find, understood
 from course.errors import (
     INTERRUPTED,
@@ -159,29 +159,26 @@ def _program(*, fancy: bool) -> Any:
     app = build(fancy=fancy)
     app.callback(epilog="Start with: course demo, then course init my-course.")(_root)
     program = typer.main.get_command(app)
-    for option in program.params:
-        if option.name in {"install_completion", "show_completion"}:
-            option.help = f"{option.help.rstrip('.')}; for another one, name it: zsh."  # type: ignore[attr-defined]
+    for one in program.params:
+        if one.name in {"install_completion", "show_completion"}:
+            one.help = f"{one.help.rstrip('.')}; for another one, name it: zsh."  # type: ignore[attr-defined]
     return program
 
 
 def _root(
     ctx: typer.Context,
-    # Taken out of the line before it is parsed; declared so that --help and completion know them.
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,  # noqa: ARG001
-    plain: Annotated[  # noqa: ARG001
-        bool, typer.Option("--plain", help="No boxes, no colour, no motion; one fact a line.")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the result.")] = False,  # noqa: ARG001
-    directory: Annotated[  # noqa: ARG001
-        str | None, typer.Option("-C", metavar="DIR", help="Work in this folder.")
-    ] = None,
-    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,  # noqa: ARG001
+    json: Annotated[bool, option("--json", "Print one JSON object.")] = False,
+    plain: Annotated[bool, option("--plain", "No boxes, no colour, no motion; one fact a line.")] = False,
+    quiet: Annotated[bool, option("--quiet -q", "Only the result.")] = False,
+    directory: Annotated[str | None, option("-C DIR", "Work in this folder.")] = None,
+    version: Annotated[bool, option("--version", "Print the version.")] = False,
 ) -> int | None:
     """Learn physics simulation for robotics: lessons, exercises and their checks.
 
     Without a command: where you are and what is next. Everything works offline.
     """
+    # Taken out of the line before it is parsed; declared so that --help and completion know them.
+    del json, plain, quiet, directory, version
     if ctx.invoked_subcommand is not None or ctx.resilient_parsing:
         return None
     home: Callable[[], int] = find(*HOME)

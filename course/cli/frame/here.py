@@ -75,10 +75,10 @@ class Here:
                 )
             return chosen
         there = self.workspace.begun()
-        names = [one.id for one in self._every() if one.id in there]
+        names = [name for name in self.known if name in there]
         for name in (self._folder_name(), self._last_worked_on(), names[0] if len(names) == 1 else ""):
-            if name in self._known:
-                return self.catalog.exercise(name)
+            if name in self.known:
+                return self.known[name]
         if not names:
             raise self.nothing_started()
         problem = f"There are several exercises here, and none was worked on last: {', '.join(names)}."
@@ -87,11 +87,12 @@ class Here:
 
     def of_folder(self) -> Exercise | None:
         """The exercise or warm-up that the current folder is of."""
-        return self.catalog.exercise(name) if (name := self._folder_name()) in self._known else None
+        return self.known.get(self._folder_name())
 
-    @property
-    def _known(self) -> tuple[str, ...]:
-        return (*self.catalog.exercise_ids(), *self.catalog.warm_up_ids())
+    @cached_property
+    def known(self) -> dict[str, Exercise]:
+        """The exercises by their ids, in the order they are done, and then the warm-ups."""
+        return {one.id: one for one in (*self.catalog.exercises(), *self.catalog.warm_ups())}
 
     def nothing_started(self) -> NotFoundError:
         """The error that no exercise has been started; its advice names the first one."""
@@ -101,12 +102,9 @@ class Here:
         return NotFoundError(problem, help=fix, code="nothing_started")
 
     def started(self) -> tuple[Exercise, ...]:
-        """The exercises that have been started, in the order they are done, and then the warm-ups."""
-        names = set(self.workspace.started())
-        return tuple(one for one in self._every() if one.id in names)
-
-    def _every(self) -> tuple[Exercise, ...]:
-        return *self.catalog.exercises(), *self.catalog.warm_ups()
+        """The exercises and warm-ups that have been started, in the order of ``known``."""
+        names = self.workspace.started()
+        return tuple(one for name, one in self.known.items() if name in names)
 
     def unread(self, exercise: Exercise) -> str:
         """A file that is not read because of its name though it holds work; "" if there is none.

@@ -13,6 +13,7 @@ from __future__ import annotations
 import base64
 import struct
 from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
 from rich.cells import cell_len
@@ -43,31 +44,28 @@ def half_blocks(pixels: bytes, columns: int, rows: int, labels: list[list[Any]])
         for column, row, words, ink, bold in labels
         for at, letter in enumerate(words)
     }
-    colours: dict[bytes, Color] = {}
+    colour = cache(lambda three: Color.from_rgb(*three))
 
-    def colour(at: int) -> Color:
-        three = pixels[at : at + 3]
-        if three not in colours:
-            colours[three] = Color.from_rgb(*three)
-        return colours[three]
+    def cell(row: int, column: int) -> tuple[str, Style]:
+        at, below = 3 * (2 * row * columns + column), 3 * columns
+        upper, lower = pixels[at : at + 3], pixels[at + below : at + below + 3]
+        if (row, column) not in letters:
+            return "▀", Style(color=colour(upper), bgcolor=colour(lower))
+        letter, ink, bold = letters[row, column]
+        paper = bytes((one + other) // 2 for one, other in zip(upper, lower, strict=True))
+        return letter, Style(color=Color.from_rgb(*ink), bgcolor=colour(paper), bold=bold)
 
-    lines = []
-    for row in range(rows):
-        line = Text(no_wrap=True)
-        for column in range(columns):
-            upper = 3 * (2 * row * columns + column)
-            lower = upper + 3 * columns
-            letter = letters.get((row, column))
-            if letter is None:
-                line.append("▀", Style(color=colour(upper), bgcolor=colour(lower)))
-            else:
-                words, ink, bold = letter
-                paper = [(pixels[upper + part] + pixels[lower + part]) // 2 for part in range(3)]
-                line.append(
-                    words, Style(color=Color.from_rgb(*ink), bgcolor=Color.from_rgb(*paper), bold=bold)
-                )
-        lines.append(line)
-    return lines
+    every = ([cell(row, column) for column in range(columns)] for row in range(rows))
+    return [Text.assemble(*cells, no_wrap=True) for cells in every]
+
+
+def in_half_blocks(make: Builder, columns: int, rows: int = 0) -> list[Text]:
+    """A figure in half blocks; its height follows from its width unless it is given."""
+    from course.figures.terminal import in_cells
+
+    drawn = in_cells(make, columns, rows)
+    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
+    return half_blocks(drawn.pixels.tobytes(), drawn.columns, drawn.rows, labels)
 
 
 Protocol = Literal["kitty", "iterm2", "sixel"]
@@ -129,16 +127,13 @@ def picture(
     protocol = protocol_of(console, environ)
     if protocol is None and not has_half_blocks(console):
         return None
+    if protocol is None:
+        return Group(*in_half_blocks(make, columns))
     from course.figures.style import file_of
-    from course.figures.terminal import in_cells
 
-    if protocol is not None:
-        codes = _escape_codes(file_of(make, "png"), protocol, columns, console)
-        # A control segment has no width and is dropped where there is no terminal.
-        return Segments([Segment(codes, None, [(ControlType.HOME,)]), Segment.line()])
-    drawn = in_cells(make, columns)
-    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
-    return Group(*half_blocks(drawn.pixels.tobytes(), drawn.columns, drawn.rows, labels))
+    codes = _escape_codes(file_of(make, "png"), protocol, columns, console)
+    # A control segment has no width and is dropped where there is no terminal.
+    return Segments([Segment(codes, None, [(ControlType.HOME,)]), Segment.line()])
 
 
 def _letter_of(console: Console) -> int:

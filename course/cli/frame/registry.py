@@ -68,7 +68,7 @@ COMMANDS: dict[str, Entry] = {
     "hint": Entry("work.hinting", "hint", PRACTISE, "Show the next hint.", "integrators"),
     "diff": Entry("work.changing", "diff", PRACTISE, "Show what changed since the stub.", "integrators"),
     "report": Entry(
-        "work.reporting", "report", PRACTISE, "Show what your code does, with figures.", "sim-to-real"
+        "work.checking", "report", PRACTISE, "Show what your code does, with figures.", "sim-to-real"
     ),
     "reflect": Entry(
         "work.hinting", "reflect", PRACTISE, "Answer in prose, and grade your answer.", "sim-to-real"
@@ -125,20 +125,15 @@ def understood(words: tuple[str, ...]) -> tuple[str, ...]:
     return (*ALSO[first], *rest) if first in ALSO else words
 
 
-def content_is_whole() -> bool:
-    """Whether graders and solutions are here; where the course itself cannot be found, that is said later."""
-    with suppress(CourseError):
-        return content().is_checkout
-    return True
-
-
 class LazyGroup(TyperGroup):
     """A group that knows its commands by name and loads the one that is run."""
 
     def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - the signature is typer's
         """Names in the order they are listed; what needs a checkout is offered in one."""
-        here = content_is_whole()
-        return [name for name, entry in COMMANDS.items() if here or entry.panel not in {TEACH, WRITE}]
+        whole = True
+        with suppress(CourseError):  # where the course itself cannot be found, that is said later
+            whole = content().is_checkout
+        return [name for name, entry in COMMANDS.items() if whole or entry.panel not in {TEACH, WRITE}]
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """The list of commands in plain help, under the same headings as on a terminal."""

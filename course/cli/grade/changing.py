@@ -198,11 +198,8 @@ def _times(
     """The times in a list. Those of a worksheet need an exercise and its deadline; some rows may fit no
     student, and some students have more time by it."""
     if not isinstance(listed, Worksheet):
-        return (
-            [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed],
-            [],
-            set(),
-        )
+        named = [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed]
+        return named, [], set()
     ids = [item.id for item in results.exercises() if item.id != "quiz"]
     name = exercise or (ids[0] if len(ids) == 1 else "")
     if name not in ids:

@@ -154,8 +154,9 @@ def _finish(
     screen.show_result(console, result)
     if any(one.seed == attempt.seed and one.id != attempt.id for one in desk.history.finished):
         console.line("Questions of this seed were answered before: this attempt does not count.")
-    if result.passed:  # else the lesson to read comes first
-        screen.show_first_due(console, due, today())
+    if result.passed and due:  # else the lesson to read comes first
+        many = f"{len(due)} questions are under review, the first" if len(due) > 1 else "1 is under review,"
+        console.line(f"{many} {screen.when(due[0].on, today())}: course quiz review")
     console.next(step)
     return desk.here.answer(
         filled(

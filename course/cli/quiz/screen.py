@@ -246,13 +246,6 @@ def _lettered(choice: Choice) -> str:
     return f"{choice.letter}. {choice.text}"
 
 
-def show_first_due(console: Console, due: Sequence[Due], today: date) -> None:
-    """How many questions are under review, and the day on which the first is due."""
-    if due:
-        many = f"{len(due)} questions are under review, the first" if len(due) > 1 else "1 is under review,"
-        console.line(f"{many} {_when(due[0].on, today)}: course quiz review")
-
-
 def show_due(console: Console, due: Sequence[Due], today: date) -> None:
     """The day on which each question under review is due, a line for those that stand alike."""
     if not due:
@@ -261,13 +254,13 @@ def show_due(console: Console, due: Sequence[Due], today: date) -> None:
     console.heading("Under review", f"until right {ROUNDS} times in a row, {GAP_DAYS} days or more apart")
     alike: dict[str, list[str]] = {}
     for entry in due:
-        state = f"{_when(entry.on, today)}; right {entry.rounds} of {ROUNDS} times"
+        state = f"{when(entry.on, today)}; right {entry.rounds} of {ROUNDS} times"
         alike.setdefault(state, []).append(entry.question)
     for state, questions in alike.items():
         console.line(f"{', '.join(questions)}: {state}", indent=2)
 
 
-def _when(day: date, today: date) -> str:
+def when(day: date, today: date) -> str:
     days = (day - today).days
     if days <= 0:
         return "due now"

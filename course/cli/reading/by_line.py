@@ -7,8 +7,9 @@ import bisect
 import contextlib
 import itertools
 import re
-import threading
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import wait
+from functools import partial
 from pathlib import Path
 
 from course.catalog import blocks as b
@@ -68,18 +69,16 @@ class LineReader:
             self._events = lesson_events(store, lesson.id, catalog.syllabus.split)
         self._progress = InProgress(self._script, self._events, self._write, catalog.version)
         self._files: dict[int, Path] = {}  # by number of the cell that the student changes in it
-        self._bench = Bench(self._progress, self._ran)
+        self._bench = Bench(self._progress)
         self._kept = False  # whether the last event was recorded
-        self._over = threading.Event()
-        self._gave: CellOutput | None = None
         self._does: dict[str, Callable[[str, int], int | None]] = {
             "b": lambda _, page: max(0, page - 1),
             "t": self._contents,
             "g": self._go,
-            "r": self._on_cell(self._run),
-            "e": self._on_cell(self._edit),
-            "u": self._on_cell(self._undo),
-            **{word: self._on_task(word) for word in ("start", "check", "hint")},
+            "r": partial(self._with_cell, self._run),
+            "e": partial(self._with_cell, self._edit),
+            "u": partial(self._with_cell, self._undo),
+            **{word: partial(self._with_task, word) for word in ("start", "check", "hint")},
             "?": self._help,
         }
 
@@ -222,21 +221,17 @@ class LineReader:
         inside = range(self._starts[number], self._starts[number + 1])
         return [cell for cell in self._script.shown_cells if cell.index in inside]
 
-    def _on_cell(self, act: Callable[[Cell], None]) -> Callable[[str, int], None]:
-        """An action for the cell of a page, or for the one whose number is given."""
-
-        def do(rest: str, number: int) -> None:
-            cells = self._cells(number) if not rest else list(self._script.shown_cells)
-            cell = next((one for one in cells if not rest or str(one.number) == rest), None)
-            if cell is None:
-                none = f"No cell {rest} in this lesson."
-                self._say(none if rest else "No cell on this page; name its number.")
-            elif self._progress.closed_by(cell.index) is not None:
-                self._say("Predict first.")
-            else:
-                act(cell)
-
-        return do
+    def _with_cell(self, act: Callable[[Cell], None], rest: str, number: int) -> None:
+        """Do something with the cell of a page, or with the one whose number is given."""
+        cells = self._cells(number) if not rest else list(self._script.shown_cells)
+        cell = next((one for one in cells if not rest or str(one.number) == rest), None)
+        if cell is None:
+            none = f"No cell {rest} in this lesson."
+            self._say(none if rest else "No cell on this page; name its number.")
+        elif self._progress.closed_by(cell.index) is not None:
+            self._say("Predict first.")
+        else:
+            act(cell)
 
     def _run(self, cell: Cell) -> None:
         path = self._files.get(cell.number)
@@ -246,24 +241,17 @@ class LineReader:
             except OSError as error:
                 self._say(f"{path} cannot be read: {error.strerror}.")
                 return
-        self._over.clear()
-        self._bench.start(cell)
+        running = self._bench.start(cell)
+        assert running is not None  # one at a time
         try:
-            if not self._over.wait(_PATIENCE):
+            if not wait([running], _PATIENCE).done:
                 self._say(f"Cell {cell.number} runs; Ctrl-C stops it.")
-            self._over.wait()
+            gave = running.result()
         except KeyboardInterrupt:
             self._bench.interrupt()
-            self._over.wait()
-        if self._gave is not None:
-            self._progress.ran(cell, self._progress.cell(cell).source, self._gave.printed, self._gave.error,
-                               self._gave.seconds)  # fmt: skip
-            self._tell(cell, self._gave)
-
-    def _ran(self, _cell: Cell, _source: str, gave: CellOutput) -> None:
-        """A cell has ended (called in the cells' thread)."""
-        self._gave = gave
-        self._over.set()
+            gave = running.result()
+        self._progress.ran(cell, self._progress.cell(cell).source, gave.printed, gave.error, gave.seconds)
+        self._tell(cell, gave)
 
     def _tell(self, cell: Cell, gave: CellOutput) -> None:
         if gave.earlier:
@@ -309,21 +297,17 @@ class LineReader:
         block = self._pages[number][-1]
         return self._catalog.exercise(block.id) if isinstance(block, b.Task) else None
 
-    def _on_task(self, command: str) -> Callable[[str, int], None]:
-        """A command for the warm-up or the exercise of a page."""
-
-        def do(_: str, number: int) -> None:
-            task = self._task(number)
-            if task is None or self._here is None:
-                first = "Make a workspace first: course init my-course"
-                self._say("No warm-up and no exercise on this page." if task is None else first)
-                return
-            try:
-                again(["warmup" if command == "start" and task.is_warm_up else command, task.id])
-            except CourseError as error:
-                self._console.error(error.message, error.help)
-
-        return do
+    def _with_task(self, command: str, _: str, number: int) -> None:
+        """Run a command for the warm-up or the exercise of a page."""
+        task = self._task(number)
+        if task is None or self._here is None:
+            first = "Make a workspace first: course init my-course"
+            self._say("No warm-up and no exercise on this page." if task is None else first)
+            return
+        try:
+            again(["warmup" if command == "start" and task.is_warm_up else command, task.id])
+        except CourseError as error:
+            self._console.error(error.message, error.help)
 
     # -- ways ------------------------------------------------------------------------------------------
 

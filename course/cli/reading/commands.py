@@ -20,9 +20,8 @@ from course.cli.home.advice import after_lesson
 from course.cli.home.overview import day, lesson_states, warm_up_states
 from course.cli.home.replies import LessonState, WarmUpState
 from course.cli.reading.lesson import Printer, printer
-from course.cli.work.changing import put
+from course.cli.work.changing import Start, put
 from course.cli.work.checking import check as check_work
-from course.cli.work.replies import Start
 from course.errors import CourseError, NotFoundError, UsageError
 from course.printable import counted
 from course.progress.history import Standing
@@ -118,7 +117,11 @@ def lesson(
     if section is not None:
         shown.blocks(script.blocks[section.start : section.end])
     elif paged:
-        whole = _read_by_line(console, here, catalog, chosen, shown)
+        from course.cli.reading.by_line import LineReader
+        from course.isolation.probe import kept_sandboxes
+
+        with kept_sandboxes():  # its tasks are checked one after the other
+            whole = LineReader(console, here, catalog, chosen, shown).read()
     else:
         shown.head()
         shown.blocks(script.blocks)
@@ -161,18 +164,12 @@ def _printer(
     catalog: Catalog, script: Script, console: Console, figures: Path | None, text: io.StringIO | None
 ) -> Printer:
     """What prints a lesson on the console, or into ``text`` as ``--plain`` shows it."""
-    if text is None:
-        return printer(
-            catalog,
-            script,
-            console.rich(),
-            plain=console.plain,
-            figures_dir=figures,
-            width=console.width,
-            wraps=console.wraps,
+    shown_on = console.rich()
+    if text is not None:
+        shown_on = RichConsole(
+            file=text, width=MAX_WIDTH, no_color=True, markup=False, emoji=False, highlight=False
         )
-    quiet = RichConsole(file=text, width=MAX_WIDTH, no_color=True, markup=False, emoji=False, highlight=False)
-    return printer(catalog, script, quiet, plain=True, figures_dir=figures)
+    return printer(catalog, script, shown_on, plain=console.plain, figures_dir=figures, wraps=console.wraps)
 
 
 def _section(script: Script, slug: str) -> Section:
@@ -213,16 +210,6 @@ def _print_code(console: Console, script: Script, number: int) -> int:
     source = cells[number - 1].source
     console.raw(f"{source}\n")
     return console.answer(_reply(script.lesson, source))
-
-
-def _read_by_line(
-    console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, shown: Printer
-) -> bool:
-    from course.cli.reading.by_line import LineReader
-    from course.isolation.probe import kept_sandboxes
-
-    with kept_sandboxes():  # its tasks are checked one after the other
-        return LineReader(console, here, catalog, chosen, shown).read()
 
 
 def _after(here: Here | None, chosen: Lesson, *, read: bool) -> str:

@@ -76,17 +76,27 @@ class _Printer:
         catalog: names what the lesson links to.
         figures_dir: folder to write the figures to as PNG; None writes none. A UsageError is raised where it
             cannot be written to.
+        wraps: plain lines wrap between words.
 
     Attributes:
         pictures: those written so far.
     """
 
-    def __init__(self, catalog: Catalog, script: Script, console: Console, figures_dir: Path | None) -> None:
+    def __init__(
+        self,
+        catalog: Catalog,
+        script: Script,
+        console: Console,
+        figures_dir: Path | None = None,
+        wraps: bool = False,
+    ) -> None:
         self._catalog = catalog
         self._lesson = script.lesson
         self._console = console
         self._figure_ids = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
-        self._figures_dir = figures_dir
+        self._figures_dir, self._wraps = figures_dir, wraps
+        self._room = min(max(20, console.width - _MARGIN), _PROSE)  # columns of prose that is laid out
+        self._told_how = False  # to save figures: said once
         self.pictures: list[Path] = []
 
     def _number_of(self, figure: b.Figure) -> int:
@@ -111,18 +121,7 @@ _SENTENCE_END = re.compile(r"(?<=[.!?])(?<!\b[A-Z]\.)[\"”)]?\s+(?=[A-Z\"“(\d
 
 
 class PlainPrinter(_Printer):
-    """Prints the parts of one lesson as plain lines.
-
-    Args:
-        wraps: lines wrap between words.
-    """
-
-    def __init__(
-        self, catalog: Catalog, script: Script, console: Console, figures_dir: Path | None, wraps: bool
-    ) -> None:
-        super().__init__(catalog, script, console, figures_dir)
-        self._wraps = wraps
-        self._told_how = False  # to save them: said once
+    """Prints the parts of one lesson as plain lines."""
 
     def head(self) -> None:
         lesson = self._lesson
@@ -287,12 +286,6 @@ _SPANS = {"emphasis": "italic", "strong": "bold", "code": "bold cyan"}
 class FancyPrinter(_Printer):
     """Prints the parts of one lesson with Rich."""
 
-    def __init__(
-        self, catalog: Catalog, script: Script, console: Console, figures_dir: Path | None, width: int
-    ) -> None:
-        super().__init__(catalog, script, console, figures_dir)
-        self._prose = min(max(20, width - _MARGIN), _PROSE)
-
     def head(self) -> None:
         for shown, above in self._head(f"{self._lesson.id} · "):
             self._print(shown, above=above)
@@ -319,7 +312,7 @@ class FancyPrinter(_Printer):
     def _print(self, shown: RenderableType, *, above: int = 0) -> None:
         for _ in range(above):
             self._console.print()
-        self._console.print(_Prefixed(shown, " " * _MARGIN), width=self._prose + _MARGIN)
+        self._console.print(_Prefixed(shown, " " * _MARGIN), width=self._room + _MARGIN)
 
     def _block(self, block: b.Block) -> RenderableType | None:  # noqa: C901, PLR0911, PLR0912 - one per kind
         match block:
@@ -334,15 +327,15 @@ class FancyPrinter(_Printer):
             case b.CodeCell(hidden=False):
                 return self._code(block)
             # What does not fit into the screen is said in words, as on paper.
-            case b.Diagram(drawing=text, description=description) if _widest(text) > self._prose:
+            case b.Diagram(drawing=text, description=description) if _widest(text) > self._room:
                 return Text(f"Diagram: {description}")
             case b.Listing(text=text) | b.Diagram(drawing=text):
                 return Text(text, no_wrap=True, overflow="fold")
             case b.MathBlock(text=text, spoken=spoken):
                 widest = _widest(text)
-                if widest > self._prose:
+                if widest > self._room:
                     return Text(spoken)
-                return Padding(Text(text), (0, 0, 0, min(4, max(0, self._prose - widest))))
+                return Padding(Text(text), (0, 0, 0, min(4, max(0, self._room - widest))))
             case b.Figure():
                 return self._figure(block)
             case b.Prediction(blocks=inner):
@@ -365,7 +358,7 @@ class FancyPrinter(_Printer):
         text.stylize("bold")
         if level > 2:
             return text
-        return Group(Text(""), text, Text("─" * min(self._prose, text.cell_len), style="dim"))
+        return Group(Text(""), text, Text("─" * min(self._room, text.cell_len), style="dim"))
 
     def _passage(self, kind: str, inner: tuple[b.Block, ...]) -> RenderableType:
         heading = _PREDICT if kind == "predict" else kind.capitalize()
@@ -396,7 +389,7 @@ class FancyPrinter(_Printer):
     def _table(self, table: b.Table) -> RenderableType:
         header = [self._text(cell) for cell in table.header]
         rows = [[self._text(cell) for cell in row] for row in table.rows]
-        widths = _column_widths(header, rows, self._prose)
+        widths = _column_widths(header, rows, self._room)
         if widths is None:  # too wide: a row at a time
             facts: list[RenderableType] = []
             for row in rows:
@@ -419,11 +412,11 @@ class FancyPrinter(_Printer):
 
     def _rule(self, label: str) -> Text:
         lead = f"── {label} " if label else ""
-        return Text(lead + "─" * (min(self._prose, 58) - len(lead)), style="dim")
+        return Text(lead + "─" * (min(self._room, 58) - len(lead)), style="dim")
 
     def _figure(self, figure: b.Figure) -> RenderableType:
         shown: list[RenderableType] = []
-        drawn = picture(self._console, os.environ, lambda: build(figure.id), self._prose)
+        drawn = picture(self._console, os.environ, lambda: build(figure.id), self._room)
         if drawn is not None:
             shown.append(drawn)
         shown.append(self._caption(figure))
@@ -538,20 +531,17 @@ def printer(
     *,
     plain: bool = False,
     figures_dir: Path | None = None,
-    width: int | None = None,
     wraps: bool = False,
 ) -> Printer:
     """What prints a lesson on one console.
 
     Args:
         plain: one fact a line, no boxes, formulae in words, figures and diagrams as their descriptions.
-        width: columns to use; the console's own if left out.
         wraps: plain lines wrap between words.
     """
     # A terminal that cannot show the drawings and formulae gets what a screen reader gets.
-    if plain or not console.encoding.lower().startswith("utf"):
-        return PlainPrinter(catalog, script, console, figures_dir, wraps)
-    return FancyPrinter(catalog, script, console, figures_dir, width or console.width)
+    is_plain = plain or not console.encoding.lower().startswith("utf")
+    return (PlainPrinter if is_plain else FancyPrinter)(catalog, script, console, figures_dir, wraps)
 
 
 def paginate(blocks: tuple[b.Block, ...]) -> tuple[tuple[b.Block, ...], ...]:

@@ -355,27 +355,37 @@ def _run_unseen(
     console: Console, chosen: Chosen, options: PlayOptions, targets: dict[str, Path], guess: float | None
 ) -> int:
     made: dict[str, Any] = {}
-    film = Film(chosen.scene) if {"gif", "mp4", "png"} & targets.keys() else None
+    film, pictures = Film(chosen.scene), targets.keys() & {"gif", "mp4", "png"}
+    filming = bool(pictures - {"png"})
     recordings: list[Recording] = []
     watch = (lambda world: recordings.append(Recording(world))) if "record" in targets else None
-    filming = bool({"gif", "mp4"} & targets.keys())
     end = chosen.scene.duration if options.duration is None else options.duration
+    at = math.inf if options.at is None else options.at
+
+    def draw(world: World, snapshot: Snapshot) -> None:
+        # The moment of --at lies between the film's frames.
+        if filming and round(snapshot.t * _FPS, 6) >= len(film):
+            film.take(world.parts, snapshot)
+        # The picture is the last frame up to that moment.
+        if snapshot.t <= at + 1e-9:
+            made["picture"] = (world.parts, snapshot)
+
     with console.working(f"Running {chosen.scene.id}"):
         done = running.run(
             chosen,
             duration=options.duration,
             guess=guess,
             every=(options.every or _EVERY) if options.csv else 0.0,
-            on_frame=None if film is None else _taker(film, options, made, filming=filming),
+            on_frame=draw if pictures else None,
             fps=_FPS if filming else 1.0,
-            also_at=(end if options.at is None else options.at,) if "png" in targets else (),
+            also_at=(min(at, end),) if "png" in targets else (),
             watch=watch,
         )
     if recordings:
         made["record"] = recordings[0].encode()
     if "csv" in targets:
         made["csv"] = table(done)
-    if film is not None:
+    if pictures:
         with console.working("Drawing"):
             made |= {kind: getattr(film, kind)(_FPS) for kind in ("mp4", "gif") if kind in targets}
             if "png" in targets:
@@ -403,22 +413,6 @@ def _run_unseen(
             files=files,
         )
     )
-
-
-def _taker(
-    film: Film, options: PlayOptions, made: dict[str, Any], *, filming: bool
-) -> Callable[[World, Snapshot], None]:
-    """Takes every frame of a film, and the one picture."""
-
-    def take(world: World, snapshot: Snapshot) -> None:
-        # The moment of --at lies between the film's frames.
-        if filming and round(snapshot.t * _FPS, 6) >= len(film):
-            film.take(world.parts, snapshot)
-        # The picture is the last frame up to that moment.
-        if options.png is not None and (options.at is None or snapshot.t <= options.at + 1e-9):
-            made["picture"] = (world.parts, snapshot)
-
-    return take
 
 
 def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], options: PlayOptions) -> None:

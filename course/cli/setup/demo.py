@@ -23,8 +23,7 @@ from course.catalog.reading import read_document
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.replies import Envelope
-from course.cli.work.checking import reply_to
-from course.cli.work.replies import Check
+from course.cli.work.checking import Check, reply_to
 from course.cli.work.verdict import show_verdict
 from course.errors import InternalError
 from course.figures.described import Panel, Plot, Series
@@ -249,9 +248,8 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     """Both motions, where the terminal can show a picture."""
     if not console.draws:
         return
-    from course.cli.frame.pictures import half_blocks
+    from course.cli.frame.pictures import in_half_blocks
     from course.figures.plots import draw
-    from course.figures.terminal import in_cells
 
     wide = console.width >= _WIDE
     columns, rows = console.width, _PANEL_ROWS * (1 if wide else 2)
@@ -269,8 +267,7 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     )
     plot = Plot("", panels, columns=2 if wide else 1)
     with console.working("Drawing"):
-        drawn = in_cells(lambda: draw(plot), columns, rows)
-    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
-    for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
+        lines = in_half_blocks(lambda: draw(plot), columns, rows)
+    for line in lines:
         console.rich().print(line)
     console.line(("Grey: the motion of the other panel.", "dim"))

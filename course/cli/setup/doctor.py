@@ -13,6 +13,7 @@ import tempfile
 import time
 import unicodedata
 from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 from urllib.parse import quote
@@ -98,18 +99,19 @@ def doctor(
     level, causes, advice = protection()
     kind = "checkout (instructor's)" if catalog.content.is_checkout else "wheel (student's)"
     shape = terminal(console)
+    fact = partial(console.item, indent=0, width=12)
     complete = not any(item.group == "" and not item.ok for item in found) and not trouble
-    _fact("Course", f"{catalog.title} {catalog.version}, installed as a {kind}")
-    _fact("Python", f"{platform.python_version()} at {sys.executable}, {platform.platform()}")
+    fact("Course", f"{catalog.title} {catalog.version}, installed as a {kind}")
+    fact("Python", f"{platform.python_version()} at {sys.executable}, {platform.platform()}")
     there = [one for one in found if one.ok or not one.group]  # with what is missing of the base
     needs = ["" if one.ok else f" (needs {one.requirement})" for one in there]
     named = (f"{one.name} {one.installed or 'MISSING'}{more}" for one, more in zip(there, needs, strict=True))
-    _fact("Packages", ", ".join(named))
-    _fact("Protection", f"{level}: {_LEVELS[level]}" if level in _LEVELS else level)
+    fact("Packages", ", ".join(named))
+    fact("Protection", f"{level}: {_LEVELS[level]}" if level in _LEVELS else level)
     for sentence in (*causes, *advice):
         console.line(sentence, indent=2)
-    _fact("Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()))
-    _fact("Workspace", workspace or "none here")
+    fact("Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()))
+    fact("Workspace", workspace or "none here")
     others = [one for one in requirements() if one.unserved and one.group not in _NOT_FOR_USERS]
     unserved = tuple(f"Optional ({one.group}): {one.unserved}." for one in others)
     install = (f"{fix.problem} Install it with: {fix.command}" for fix in fixes)
@@ -134,10 +136,6 @@ def doctor(
             unserved=unserved,
         )
     )
-
-
-def _fact(label: str, words: str) -> None:
-    current().item(label, words, indent=0, width=12)
 
 
 def packages() -> Iterable[Package]:

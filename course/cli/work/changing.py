@@ -9,19 +9,63 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
+import msgspec
+
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, write
 from course.cli.frame.options import ExerciseName, OneExercise, argument, exercise_ids, option
-from course.cli.frame.replies import Backup, FileReply, NextStep
+from course.cli.frame.replies import Backup, Envelope, FileReply, NextStep
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work, name_of_work
-from course.cli.work.replies import Change, Diff, Reset, Start, Update
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.handed_in.limits import read_notebook
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.printable import counted
-from course.progress.workspace import same_text, write_atomically
+from course.progress.workspace import same_text
+
+
+class Diff(Envelope, tag="course.diff/1", frozen=True, kw_only=True):
+    exercise: str
+    path: str
+    changed: bool
+    added: int
+    removed: int
+    diff: str
+
+
+class Reset(Envelope, tag="course.reset/1", frozen=True, kw_only=True):
+    exercise: str
+    changed: bool
+    backups: tuple[Backup, ...]
+    next: NextStep
+
+
+class Change(msgspec.Struct, frozen=True):
+    """The action of ``update`` on one file.
+
+    ``action`` is "replace" (it was never edited), "beside" (it was: the new one is at ``new``), "merge" (a
+    notebook: newer text was put around the student's work), "current" (already so) or "missing" (removed by
+    the student, and left so).
+    """
+
+    path: str
+    action: str
+    new: str | None = None
+    backup: str | None = None
+
+
+class Update(Envelope, tag="course.update/1", frozen=True, kw_only=True):
+    dry_run: bool
+    from_version: str
+    to_version: str
+    changes: tuple[Change, ...]
+
+
+class Start(Envelope, tag="course.start/1", frozen=True, kw_only=True):
+    exercise: str
+    files: tuple[FileReply, ...]
+    next: NextStep
 
 
 def diff(exercise: ExerciseName = None) -> int:
@@ -34,7 +78,7 @@ def diff(exercise: ExerciseName = None) -> int:
     work = chosen_work(here, *asked_for(here, exercise))
     report_source_file(console, here, work)
     name = work.path
-    before, after = _lines(work.stub), _lines(work.source)
+    before, after = (one.decode("utf-8-sig", "replace").splitlines() for one in (work.stub, work.source))
     rows = list(difflib.unified_diff(before, after, f"stub/{name}", name, lineterm=""))
     added = sum(row.startswith("+") for row in rows[2:])
     removed = sum(row.startswith("-") for row in rows[2:])
@@ -84,17 +128,15 @@ def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not
     if why_not:
         console.line(why_not)
         return console.answer(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
-    backups = []
-    if there:
-        copy = here.workspace.backup(path, "reset")
-        console.line(f"Your version is kept at {here.workspace.shown(copy)}.")
-        backups.append(Backup(path=str(path), backup=str(copy)))
-    write_atomically(path, stub)
+    kept = write(path, stub, why="reset").backup
+    if kept:
+        console.line(f"Your version is kept at {here.workspace.shown(Path(kept.backup))}.")
     if path.name == chosen.module:
         here.workspace.remember(chosen.place, chosen.module, stub)
+    backups = (kept,) if kept else ()
     here.record("reset", chosen.id, {"backups": [item.backup for item in backups]})
     console.line(f"{shown} is the stub again.")
-    return here.answer(Reset(exercise=chosen.id, changed=True, backups=tuple(backups), next=NextStep(step)))
+    return here.answer(Reset(exercise=chosen.id, changed=True, backups=backups, next=NextStep(step)))
 
 
 def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would be done.")] = False) -> int:
@@ -183,10 +225,6 @@ def _put(path: Path, beside: str, new: bytes, action: str, *, dry_run: bool) -> 
     to = path.with_name(beside) if action == "beside" else path
     kept = None if dry_run else write(to, new, why="update").backup
     return Change(str(path), action, str(to) if to != path else None, kept.backup if kept else None)
-
-
-def _lines(data: bytes) -> list[str]:
-    return data.decode("utf-8-sig", "replace").splitlines()
 
 
 # ---

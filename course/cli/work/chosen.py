@@ -78,7 +78,7 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
     if wanted is None or Path(wanted).suffix not in (".py", NOTEBOOK):
         return here.exercise(wanted), None
     path = Path(os.path.realpath(named(wanted)))
-    for exercise in (*here.catalog.exercises(), *here.catalog.warm_ups()):
+    for exercise in here.known.values():
         for name in (exercise.module, _notebook_name(exercise)):
             if path == Path(os.path.realpath(here.workspace.path(exercise.place, name))):
                 return exercise, name

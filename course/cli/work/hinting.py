@@ -10,22 +10,46 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
+import msgspec
 from msgspec.structs import replace
 
 from course.catalog.models import Exercise, Rubric
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
 from course.cli.frame.options import ExerciseName, grade_lists, option, task_ids
-from course.cli.frame.replies import NextStep
+from course.cli.frame.replies import Envelope, NextStep
 from course.cli.home.advice import after_warm_up
 from course.cli.work.chosen import asked_for, chosen_work
-from course.cli.work.replies import Hint, Reflect, ReflectPoint, Solution
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.handed_in.limits import MAX_FILE
 from course.printable import counted
 from course.progress.history import History, fingerprint
 
 PACKS = "*.coursepack"
+
+
+class Hint(Envelope, tag="course.hint/1", frozen=True, kw_only=True):
+    """``given`` is True if a new hint was shown; ``reason`` says why not otherwise.
+
+    ``reason`` is one of "", "not_checked", "ungradable", "passing", "unchanged", "exhausted". ``hint`` is the
+    new hint, or the last one again while the next is not due.
+    """
+
+    exercise: str
+    given: bool
+    reason: str
+    task: str | None
+    hint: str | None
+    message: str
+    next: NextStep
+
+
+class Solution(Envelope, tag="course.solution/1", frozen=True, kw_only=True):
+    """``source`` is the place of the solution; ``files`` maps file names to their text."""
+
+    exercise: str
+    source: str
+    files: dict[str, str]
 
 
 def hint(
@@ -215,6 +239,24 @@ def _texts(files: Mapping[str, bytes]) -> dict[str, str]:
 
 KIND = "reflection"
 GRADES = ("yes", "partly", "no")
+
+
+class ReflectPoint(msgspec.Struct, frozen=True):
+    """A point to grade an answer by. ``grade`` is "yes", "partly", "no" or None."""
+
+    text: str
+    grade: str | None
+
+
+class Reflect(Envelope, tag="course.reflect/1", frozen=True, kw_only=True):
+    """A question for prose. ``good_answer`` and ``points`` come once there is an answer."""
+
+    exercise: str
+    question: str
+    answer: str | None
+    good_answer: str | None
+    points: tuple[ReflectPoint, ...]
+    next: NextStep | None = None
 
 
 def reflect(

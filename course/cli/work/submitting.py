@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from course.catalog.models import Exercise
+import msgspec
+
+from course.catalog.models import CourseRef, Exercise
 from course.catalog.pack import zip_entry
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
 from course.cli.frame.options import argument, exercise_ids, option
-from course.cli.frame.replies import FileReply
+from course.cli.frame.replies import Envelope, FileReply
 from course.cli.work.chosen import StudentWork, work_of
-from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
 from course.handed_in import attempts
 from course.handed_in.limits import FORMAT_VERSION, MANIFEST, MAX_UNPACKED
@@ -29,6 +30,26 @@ from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
 from course.scoring.verdict import Verdict, format_points
+
+
+class SubmitFile(msgspec.Struct, frozen=True):
+    """A file that goes in. ``last_score`` is what the public checks give these bytes; None if nothing."""
+
+    path: str
+    sha256: str
+    bytes: int
+    last_score: float | None = None
+    max_score: float | None = None
+
+
+class Submit(Envelope, tag="course.submit/1", frozen=True, kw_only=True):
+    course: CourseRef
+    output: str
+    files: tuple[SubmitFile, ...]
+    left_out: tuple[FileReply, ...]
+    quiz_attempts: int = 0
+    backup: str | None = None
+    warnings: tuple[str, ...] = ()
 
 
 def submit(
@@ -89,22 +110,24 @@ def submit(
     )
 
 
-def archive(
-    course_id: str, version: str, files: Mapping[str, bytes], quiz: Sequence[Mapping[str, object]] = ()
-) -> bytes:
+def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str, object]]) -> bytes:
     """The zip: each file, and ``submission.json`` with its checksum and this Python's and NumPy's versions.
 
     The same arguments, the same bytes.
 
     Args:
         quiz: attempts as ``course.progress.quiz.records`` gives them; a grading run scores them again.
-    """
-    from course.scoring.versions import here
 
+    Raises:
+        UngradableError: no grading run would take it.
+    """
+    from course.scoring import versions
+
+    files = {work.path: work.data for work in works}
     manifest = {
         "format_version": FORMAT_VERSION,
-        "written_with": here(),
-        "course": {"id": course_id, "version": version},
+        "written_with": versions.here(),
+        "course": {"id": here.catalog.course_id, "version": here.catalog.version},
         "files": {path: hashlib.sha256(data).hexdigest() for path, data in sorted(files.items())},
         "quiz": list(quiz),
     }
@@ -113,13 +136,7 @@ def archive(
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as packed:
         for path in sorted(entries):
             packed.writestr(zip_entry(path), entries[path])
-    return buffer.getvalue()
-
-
-def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str, object]]) -> bytes:
-    """The archive's bytes; refused if no grading run would take them."""
-    files = {work.path: work.data for work in works}
-    data = archive(here.catalog.course_id, here.catalog.version, files, quiz)
+    data = buffer.getvalue()
     if len(data) > MAX_UNPACKED:
         problem = f"Together the files are larger than {MAX_UNPACKED:,} bytes, which no grading run unpacks."
         raise UngradableError(problem, help="Keep data out of them.", code="too_large")

@@ -75,9 +75,10 @@ class ScreenPrinter(FancyPrinter):
         busy: Callable[[], tuple[str, str]],
         picture: Callable[[str, dict[str, Any] | None, int], list[Text]],
     ) -> None:
+        self._width = max(20, width - 2)
         # Kept away from the terminal: what it lays out goes to the page.
         console = Console(
-            width=width,
+            width=min(self._width, COLUMN),
             force_terminal=True,
             markup=False,
             emoji=False,
@@ -85,8 +86,7 @@ class ScreenPrinter(FancyPrinter):
             no_color=not in_colour,
             color_system="truecolor" if in_colour else None,
         )
-        self._width = max(20, width - 2)
-        super().__init__(catalog, progress.script, console, None, min(self._width, COLUMN))
+        super().__init__(catalog, progress.script, console)
         self._progress, self._script, self._practice = progress, progress.script, practice
         self._busy, self._picture = busy, picture
         self._index, self._links = -1, 0
@@ -99,7 +99,7 @@ class ScreenPrinter(FancyPrinter):
     def draw_ahead(self) -> None:
         """Have every figure of the lesson drawn, so that it is there when its reader is."""
         for figure in self._figure_ids:
-            self._picture(figure, None, self._prose)
+            self._picture(figure, None, self._room)
 
     def rows(self, index: int) -> BlockRows:
         """One block as it is now, -1 for the head of the lesson, behind the last for what stands below.
@@ -141,7 +141,7 @@ class ScreenPrinter(FancyPrinter):
     def _laid_out(self, shown: RenderableType, index: int) -> BlockRows:
         block = self._script.blocks[index] if index >= 0 else None
         wide = self.wide and isinstance(block, b.CodeCell)
-        options = self._console.options.update(width=_BESIDE if wide else self._prose, height=None)
+        options = self._console.options.update(width=_BESIDE if wide else self._room, height=None)
         drawn = self._console.render_lines(shown, options, pad=False)
         lines = [[self._segment(text, style) for text, style, _ in line] for line in drawn]
         lines = [[], *lines] if index >= 0 else lines
@@ -194,7 +194,7 @@ class ScreenPrinter(FancyPrinter):
         if not now.busy and (curves := (now.reply or {}).get("curves")):
             # The first curve of the last check, drawn where there are pictures, and in words.
             words = Text(curves[0]["description"], style="dim")
-            shown += [*self._picture(task.id, curves[0], self._prose), words, Text("")]
+            shown += [*self._picture(task.id, curves[0], self._room), words, Text("")]
         # The finding comes last: it is what must be in sight.
         return Group(*shown, *standing, self._rule(""))
 
@@ -284,12 +284,12 @@ class ScreenPrinter(FancyPrinter):
     def _figure(self, figure: b.Figure) -> RenderableType:
         caption = self._caption(figure)
         seen = Text.assemble(("The figure shows: ", "bold"), figure.alt, style="dim")
-        picture = self._picture(figure.id, None, self._prose)
+        picture = self._picture(figure.id, None, self._room)
         if not picture:
             return Group(caption, seen)
         if not any(picture):
             # Its place, with the description until it is drawn.
-            words = seen.wrap(self._console, self._prose)[: len(picture)]
+            words = seen.wrap(self._console, self._room)[: len(picture)]
             picture = [*words, *picture[len(words) :]]
         return Group(*picture, caption)
 

@@ -14,7 +14,7 @@ import sys
 import tempfile
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
@@ -50,7 +50,9 @@ class Bench:
         done: called in the cells' thread with the cell, the code that ran and its result.
     """
 
-    def __init__(self, progress: InProgress, done: Callable[[Cell, str, CellOutput], object]) -> None:
+    def __init__(
+        self, progress: InProgress, done: Callable[[Cell, str, CellOutput], object] = lambda *_: None
+    ) -> None:
         self._progress = progress
         self._done = done
         self._runner: CellRunner | None = None
@@ -59,13 +61,12 @@ class Bench:
         self._stopped = False
         self.cell: Cell | None = None
 
-    def start(self, cell: Cell) -> bool:
-        """Run a cell; False if one is running already."""
+    def start(self, cell: Cell) -> Future[CellOutput] | None:
+        """Run a cell, which will give its result; None if one is running already."""
         if self.cell is not None:
-            return False
+            return None
         self.cell, self._since, self._stopped = cell, perf_counter(), False
-        self._submit(self._run, cell, self._progress.cell(cell).source)
-        return True
+        return self._submit(self._run, cell, self._progress.cell(cell).source)
 
     def prepare(self) -> None:
         """Start the process ahead, so that the first cell need not wait for it."""
@@ -101,10 +102,10 @@ class Bench:
             if self._runner is not None:
                 self._runner.close()
 
-    def _submit(self, what: Callable[..., None], *arguments: object) -> None:
+    def _submit(self, what: Callable[..., Any], *arguments: object) -> Future[Any]:
         if self._pool is None:
             self._pool = ThreadPoolExecutor(1, thread_name_prefix="cells", initializer=_hear_no_ctrl_c)
-        self._pool.submit(what, *arguments)
+        return self._pool.submit(what, *arguments)
 
     def _ready(self) -> CellRunner:
         """In the cells' thread: their process, started."""
@@ -120,7 +121,7 @@ class Bench:
         with contextlib.suppress(IsolationError):  # the first run says it
             self._ready()
 
-    def _run(self, cell: Cell, source: str) -> None:
+    def _run(self, cell: Cell, source: str) -> CellOutput:
         from course.reading.cells import STOPPED, CellOutput
 
         try:
@@ -131,6 +132,7 @@ class Bench:
             gave = CellOutput("", f"The cell could not be run: {error}.", self._waited)
         self.cell = None
         self._done(cell, source, gave)
+        return gave
 
 
 def _hear_no_ctrl_c() -> None:

@@ -24,7 +24,7 @@ from course.cli.frame.replies import (
     reply_types,
     schema_of,
 )
-from course.cli.work.replies import Hint
+from course.cli.work.hinting import Hint
 from course.handed_in import attempts
 from course.scoring.judging.session import GradingSession
 from tests.unit.cli.conftest import MINI_COURSE, needs_jupyterlab

@@ -154,7 +154,7 @@ def test_a_short_formula_is_never_broken_over_two_lines(lesson, width):
 @pytest.mark.parametrize("plain", [False, True])
 def test_figures_are_written_where_asked_and_their_path_is_said(lesson, tmp_path, plain):
     console = console_of(400)
-    (picture,) = read_whole(lesson, console, plain=plain, figures_dir=tmp_path / "f", width=400)
+    (picture,) = read_whole(lesson, console, plain=plain, figures_dir=tmp_path / "f")
     assert picture == tmp_path / "f" / "integrators-stability.png"
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert f"Picture:{picture}" in "".join(written(console).split())

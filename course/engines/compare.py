@@ -20,7 +20,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import IO, Any, Self, cast
 
@@ -107,18 +107,9 @@ def state_of(info: EngineInfo, *, probe: bool = False) -> EngineState:
         with EngineProcess(info.id) as process:
             reply = process.ask({"do": "options", "scenario": "free-fall", "setting": "default"}, 30.0)
         trouble = "" if reply["status"] == OK else f"installed, but cannot start: {reply['message']}"
-    return EngineState(
-        id=info.id,
-        name=info.name,
-        package=info.package,
-        extra=info.extra,
-        licence=info.licence,
-        about=info.about,
-        version=found.version,
-        usable=found.installed and not trouble,
-        missing=found.missing or trouble,
-        command=found.command,
-    )
+    usable, missing = found.installed and not trouble, found.missing or trouble
+    known = {**asdict(info), **asdict(found), "usable": usable, "missing": missing}
+    return msgspec.convert(known, EngineState)
 
 
 def compare(request: Request, progress: Progress = lambda _done, _total, _what: None) -> Comparison:

@@ -6,7 +6,6 @@ import ast
 import contextlib
 import os
 import signal
-import tempfile
 import threading
 import traceback
 import types
@@ -32,6 +31,7 @@ from course.isolation.failures import StudentFailure
 from course.isolation.inside import loops
 from course.isolation.inside.worker import shares_memory
 from course.physics.systems import SYSTEMS
+from course.progress.workspace import write_atomically
 from course.scoring import kit
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.explain.fingerprint import reached_from
@@ -535,7 +535,10 @@ def write_pack(catalog: Catalog, exercise_ids: Sequence[str], output: Path) -> d
         )
     solutions = {exercise_id: _files(catalog, exercise_id) for exercise_id in exercise_ids}
     data = pack_bytes(catalog.course_id, catalog.version, solutions)
-    _write_whole(output, data)
+    if not os.access(output.parent, os.W_OK):
+        problem = f"{output} cannot be written: {output.parent} is no folder that you can write to."
+        raise UsageError(problem, help="Name a file in a folder you can write to.")
+    write_atomically(output, data)
     return {exercise_id: tuple(sorted(files)) for exercise_id, files in solutions.items()}
 
 
@@ -545,21 +548,3 @@ def _files(catalog: Catalog, exercise_id: str) -> dict[str, bytes]:
     if not paths[0].is_file():
         raise ContentError(paths[0], None, "the model solution is missing.", help="Write it first.")
     return {path.name: path.read_bytes() for path in paths if path.is_file()}
-
-
-def _write_whole(output: Path, data: bytes) -> None:
-    """Write beside the target, then move into place: a half-written pack must never look like one."""
-    try:
-        handle, name = tempfile.mkstemp(dir=output.parent, prefix=f".{output.name}.")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            Path(name).chmod(0o644)
-            Path(name).replace(output)
-        finally:
-            with contextlib.suppress(OSError):
-                Path(name).unlink()
-    except OSError as error:
-        raise UsageError(
-            f"{output} cannot be written: {error.strerror}.", help="Name a file in a folder you can write to."
-        ) from None

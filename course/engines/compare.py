@@ -11,13 +11,13 @@ import contextlib
 import datetime
 import json
 import os
-import queue
 import signal
 import statistics
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
@@ -308,7 +308,6 @@ class EngineProcess:
         self.engine = engine
         self._command = command or [sys.executable, "-P", "-m", "course.engines.worker", engine]
         self._process: subprocess.Popen[str] | None = None
-        self._lines: queue.Queue[str | None] = queue.Queue()
         self._words: Any = None
 
     def __enter__(self) -> Self:
@@ -341,7 +340,6 @@ class EngineProcess:
         return self._read(seconds)
 
     def _start(self) -> dict[str, Any]:
-        self._lines = queue.Queue()
         self._words = tempfile.TemporaryFile()  # noqa: SIM115 - closed in close()
         root = str(Path(__file__).parents[2])
         path = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH", ""))))
@@ -358,7 +356,6 @@ class EngineProcess:
         except OSError as error:
             self._words.close()
             return {"status": "unavailable", "message": f"No process could be started ({error.strerror})."}
-        threading.Thread(target=_pump, args=(self._process, self._lines), daemon=True).start()
         reply = self._read(START_S)
         if reply["status"] != "ok":
             self.close()
@@ -367,13 +364,19 @@ class EngineProcess:
         return reply
 
     def _read(self, seconds: float) -> dict[str, Any]:
+        process = cast("subprocess.Popen[str]", self._process)
+        began = time.monotonic()
+        too_long = threading.Timer(seconds, process.kill)
+        too_long.start()
         try:
-            line = self._lines.get(timeout=seconds)
-        except queue.Empty:
+            line = cast("IO[str]", process.stdout).readline()
+        finally:
+            too_long.cancel()
+        if not line.endswith("\n"):
+            if time.monotonic() - began < seconds:
+                return self._died()
             self.close()
             return {"status": "deadline", "message": f"No answer within {seconds:g} s; it was ended."}
-        if line is None:
-            return self._died()
         try:
             reply: dict[str, Any] = json.loads(line)
         except ValueError:
@@ -418,12 +421,3 @@ class EngineProcess:
                         pipe.close()
         if self._words is not None:
             self._words.close()
-
-
-def _pump(process: subprocess.Popen[str], lines: queue.Queue[str | None]) -> None:
-    """Move replies from the pipe to the queue; None at the end."""
-    # The pipe may be closed while it is read: the end, too.
-    with contextlib.suppress(OSError, ValueError):
-        for line in process.stdout or ():
-            lines.put(line)
-    lines.put(None)

@@ -118,9 +118,8 @@ class TwoLinkArm:
         angle1, angle2 = q[..., 0], q[..., 0] + q[..., 1]
         spin1, spin2 = v[..., 0], v[..., 0] + v[..., 1]
         turn1, turn2 = a[..., 0], a[..., 0] + a[..., 1]
-        up = np.array(
-            [0.0, self.g]
-        )  # being at rest in gravity is the same as accelerating upwards without it
+        # Being at rest in gravity is the same as accelerating upwards without it.
+        up = np.array([0.0, self.g])
         elbow = up + _swing(self.length1, angle1, spin1, turn1)
         force2 = self.mass2 * (elbow + _swing(self.centre2, angle2, spin2, turn2))
         force1 = self.mass1 * (up + _swing(self.centre1, angle1, spin1, turn1))

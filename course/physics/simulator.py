@@ -440,7 +440,7 @@ class _Flight:
             q, w = (np.array([self._spins[i][part] for i in self._turns]) for part in (0, 1))
             # What any law twists is of the method's order; what turns freely keeps its momentum.
             form = ByQuaternion if engine.laws and engine.stepper.order > 2 else ByMomentum
-            self._turning: ByMomentum | ByQuaternion = form(engine._inertia, Spin(q, w))
+            self._turning = form(engine._inertia, Spin(q, w))
 
     def start(self) -> State:
         """Where the motion begins; q and v have shape (B, ..., 3) or, with rotations, (B, ..., 6 or 7)."""

@@ -404,9 +404,8 @@ class LocalSubmission:
         try:
             result = _guarded(loop)
         except StudentFailure:
-            if escaped:
-                raise escaped[0] from None
-            raise
+            if not escaped:
+                raise
         if escaped:
             raise escaped[0]
         return result
@@ -438,9 +437,8 @@ def ending(seconds: float, said: Callable[[], ContentError]) -> Iterator[None]:
     before = signal.signal(signal.SIGALRM, stop) if timed else None
     try:
         if timed:
-            signal.setitimer(
-                signal.ITIMER_REAL, seconds, 1.0
-            )  # again and again: a program may catch the first
+            # Again and again: a program may catch the first.
+            signal.setitimer(signal.ITIMER_REAL, seconds, 1.0)
         with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere):  # noqa: PTH123
             yield
     except _TooLongError:

@@ -348,10 +348,10 @@ class Catalog:
     def read_exercise(self, exercise_id: str) -> Exercise:
         """The declaration in the folder of this name; not kept."""
         folder = self.content.exercise_folder(exercise_id)
-        document = read_document(folder / "exercise.toml", Exercise, reserved=("folder",))
+        document = read_document(folder / "exercise.toml", Exercise, reserved=("folder", "slow"))
         check_exercise(document)
         measured = self.times.exercises.get(exercise_id)
-        slow = measured.slow if measured else document.value.slow
+        slow = measured.slow if measured else {}
         return msgspec.structs.replace(document.value, folder=str(folder), slow=slow)
 
     @property

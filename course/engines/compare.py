@@ -394,10 +394,8 @@ class EngineProcess:
             code = process.wait()
         how = f"It ended with exit code {code}."
         if code < 0:
-            try:
-                how = f"It was ended by {signal.Signals(-code).name}."
-            except ValueError:
-                how = f"It was ended by signal {-code}."
+            named = {one.value: one.name for one in signal.Signals}
+            how = f"It was ended by {named.get(-code, f'signal {-code}')}."
         words = self._last_words()
         self.close()
         return {"status": "crash", "message": f"{how} {words}".strip()}

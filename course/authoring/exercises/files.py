@@ -256,10 +256,7 @@ def write_points(catalog: Catalog, exercise: Exercise) -> Path | None:
             # It was left out: the last line above the first task.
             last = next(i for i in range(lines.line(("task",)) - 2, 0, -1) if text[i].strip())
             text.insert(last + 1, line)
-    slow = [at for at, line in enumerate(text) if re.match(r"slow\s*=", line)]
-    for at in slow:  # measured, and kept in ``times.json``
-        del text[at]
-    if not stale and not slow:
+    if not stale:
         return None
     write_atomically(path, "\n".join(text).encode())
     return path
@@ -279,13 +276,8 @@ _LEAST = 0.4
 def audit_slow(
     catalog: Catalog, exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings
 ) -> None:
-    """Report times of checks that do not exist, and those that stand among what an author writes."""
+    """Report times of checks that do not exist."""
     again = f"Run `course author build {exercise.id}`."
-    path = exercise.checks_path.with_name("exercise.toml")
-    written = read_document(path, Exercise)
-    if written.value.slow:
-        problem = f"what was measured is kept in {catalog.times_path.name}."
-        findings.add(path, written.lines.line(("slow",)), "slow", problem, again)
     known = {check.id for check in checks if not check.hidden}
     for check in sorted(exercise.slow.keys() - known):
         findings.add(catalog.times_path, None, "slow", f"there is no public check {check}.", again)

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -194,10 +193,6 @@ class PassiveArm:
         """Joint accelerations, rad/s², shape (..., 2)."""
         return self.arm.forward(q, v, np.zeros(2))
 
-    def params(self) -> dict[str, Any]:
-        """The numbers of the arm, by name."""
-        return asdict(self.arm)
-
 
 @dataclass(frozen=True, slots=True)
 class HandPath:
@@ -266,10 +261,6 @@ class DrivenArm:
         wanted, rate, change = self.path.joints(self.planned, t)
         correction = self.stiffness * (wanted - np.asarray(q)) + self.damping * (rate - np.asarray(v))
         return self.arm.forward(q, v, self.planned.inverse(wanted, rate, change) + correction)
-
-    def params(self) -> dict[str, Any]:
-        """The numbers of the arm that moves, by name."""
-        return asdict(self.arm)
 
 
 def smooth_share(s: ArrayLike) -> tuple[Array, Array, Array]:

@@ -478,6 +478,3 @@ class _Flight:
             return a
         rotations = q[self._turns, ..., 3:], v[self._turns, ..., 3:]
         return self._joined(a, self._turning.rate(torque[self._turns], *rotations))
-
-    def params(self) -> dict[str, Any]:
-        return {"h": self._engine.h, "gravity": self._engine.gravity}

@@ -175,12 +175,9 @@ def audit(
 def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Ids of the lessons and exercises to look at; lesson files that nothing lists yet are among them."""
     files = {path.stem for path in catalog.content.lessons.glob("*.md")}
-    folders = _folders_in(catalog.content.exercises) - {WARM_UPS}
-    twice = sorted(folders & _folders_in(catalog.content.exercises / WARM_UPS))
-    if twice:
-        path = catalog.content.exercises / WARM_UPS / twice[0]
-        raise ContentError(path, None, "an exercise has this id, too.", help="Rename one of the folders.")
-    folders |= _folders_in(catalog.content.exercises / WARM_UPS)
+    catalog.warm_up_ids()  # refuses an id that an exercise has, too
+    place = catalog.content.exercises
+    folders = (_folders_in(place) - {WARM_UPS}) | _folders_in(place / WARM_UPS)
     listed = catalog.lesson_ids()
     lessons = (*listed, *sorted(files - set(listed)))
     exercises = tuple(sorted(folders))

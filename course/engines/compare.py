@@ -59,7 +59,6 @@ class Request:
         repeat: how often each measurement is made.
         quick: fewer steps, starts and repetitions; the measured values may differ a little.
         fresh: measure again even if the result is stored.
-        deadline: s for one measurement.
     """
 
     engines: tuple[str, ...] = ()
@@ -68,7 +67,6 @@ class Request:
     repeat: int = 1
     quick: bool = False
     fresh: bool = False
-    deadline: float = DEADLINE_S
 
 
 @dataclass(slots=True)
@@ -228,8 +226,7 @@ def _untuned(run: _Run, process: EngineProcess, job: Row) -> Row | None:
     twin = run.rows.get(msgspec.structs.replace(job, setting=DEFAULT).place)
     if twin is None or not twin.ok:
         return None
-    question = {"do": "options", "scenario": job.scenario, "setting": TUNED}
-    reply = process.ask(question, run.request.deadline)
+    reply = process.ask({"do": "options", "scenario": job.scenario, "setting": TUNED})
     if reply["status"] != OK or reply["options"]:
         return None
     return msgspec.structs.replace(twin, setting=TUNED)
@@ -245,7 +242,7 @@ def _accuracy(run: _Run, process: EngineProcess, job: Row) -> Row:
     }
     values: list[float] = []
     for _ in range(run.request.repeat):
-        reply = process.ask(message, run.request.deadline)
+        reply = process.ask(message)
         if reply["status"] != OK:
             return _without(job, reply)
         values.append(reply["value"])
@@ -254,7 +251,7 @@ def _accuracy(run: _Run, process: EngineProcess, job: Row) -> Row:
 
 def _speed(run: _Run, job: Row) -> Row:
     """The rate with a hundred boxes as a multiple of pymunk's, from stretches taken in turn."""
-    quick, deadline = run.request.quick, run.request.deadline
+    quick = run.request.quick
     pairs = (_PAIRS_QUICK if quick else _PAIRS) * run.request.repeat
     stretch = _STRETCH_QUICK_S if quick else _STRETCH_S
     build = {"do": "boxes", "scenario": BOXES, "dt": job.dt}
@@ -267,14 +264,14 @@ def _speed(run: _Run, job: Row) -> Row:
         known: dict[str, Any] = {}
         for process, message in reversed(asked):
             for question in (message, {"do": "chunk", "steps": _TRIAL_STEPS}):
-                reply = process.ask(question, deadline)
+                reply = process.ask(question)
                 if reply["status"] != OK:
                     return _without(job, reply)
                 known = reply if "options" in reply else known
             steps.insert(0, max(5, round(_TRIAL_STEPS * stretch / reply["seconds"])))
         for _ in range(pairs):
             for process, n, found in ((other, steps[1], rates[1]), (one, steps[0], rates[0])):
-                reply = process.ask({"do": "chunk", "steps": n}, deadline)
+                reply = process.ask({"do": "chunk", "steps": n})
                 if reply["status"] != OK:
                     return _without(job, reply)
                 found.append(n / reply["seconds"])
@@ -320,7 +317,7 @@ class EngineProcess:
     def pid(self) -> int | None:
         return self._process.pid if self._process else None
 
-    def ask(self, job: Mapping[str, Any], seconds: float) -> dict[str, Any]:
+    def ask(self, job: Mapping[str, Any], seconds: float = DEADLINE_S) -> dict[str, Any]:
         """The reply to a job, or a reply that says why there is none.
 
         Args:

@@ -323,11 +323,9 @@ def _stripped(line: b.Inlines) -> b.Inlines:
 
 def _label(inner: tuple[b.Block, ...]) -> tuple[str, tuple[b.Block, ...]]:
     """The bold word a block quote begins with, in lower case, and the quote without it."""
-    first = inner[0] if inner else None
-    if not isinstance(first, b.Paragraph) or not isinstance(first.inlines[0], b.Span):
-        return "", inner
-    if first.inlines[0].style != "strong":
-        return "", inner
-    label = b.plain_text(first.inlines[0].children).strip().rstrip(".:?").lower()
-    rest = _stripped(first.inlines[1:])
-    return label, ((b.Paragraph(first.line, rest),) if rest else ()) + inner[1:]
+    match inner:
+        case (b.Paragraph(line, (b.Span("strong", words), *more)), *others):
+            label = b.plain_text(words).strip().rstrip(".:?").lower()
+            rest = _stripped(tuple(more))
+            return label, (*((b.Paragraph(line, rest),) if rest else ()), *others)
+    return "", inner

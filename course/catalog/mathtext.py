@@ -434,18 +434,13 @@ class _Reader:
             raise MathError(f"{wanted} was expected, {found} found")
 
     def _scripted(self, base: Node) -> Node:
-        sub: Row | None = None
-        sup: Row | None = None
-        while (token := self._peek()) in ("_", "^"):
-            self._next()
-            script = self._argument()
-            if token == "_" and sub is None:
-                sub = script
-            elif token == "^" and sup is None:
-                sup = script
-            else:
+        scripts: dict[str, Row] = {}
+        while self._peek() in ("_", "^"):
+            token, script = self._next(), self._argument()
+            if token in scripts:
                 raise MathError(f"two {token} on one symbol")
-        return Script(base, sub, sup) if sub or sup else base
+            scripts[token] = script
+        return Script(base, scripts.get("_"), scripts.get("^")) if scripts else base
 
     def _argument(self) -> Row:
         if self._peek() == "{":
@@ -516,20 +511,16 @@ class _Reader:
         if name != "aligned":
             raise MathError(f"the environment {name} has no agreed text form")
         ends = frozenset({"&", "\\\\", r"\end"})
-        lines: list[tuple[Row, ...]] = []
-        cells: list[Row] = []
-        while True:
-            cells.append(self.row(ends))
+        lines: list[list[Row]] = [[]]
+        token = ""
+        while token != r"\end":
+            lines[-1].append(self.row(ends))
             token = self._next()
-            if token == "&":
-                continue
-            lines.append(tuple(cells))
-            cells = []
-            if token == r"\end":
-                break
+            if token == "\\\\":
+                lines.append([])
         if self._words() != name:
             raise MathError(f"\\end{{{name}}} is missing")
-        return Grid(tuple(lines))
+        return Grid(tuple(map(tuple, lines)))
 
 
 def _refuse_ambiguous_slash(items: list[Node]) -> None:

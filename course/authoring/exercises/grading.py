@@ -475,7 +475,7 @@ def _given(value: Any, escaped: list[BaseException]) -> Any:
     if isinstance(value, np.random.Generator):  # crosses as a seed
         return np.random.default_rng(int(value.integers(2**62)))
     if isinstance(value, _SYSTEM_TYPES) or not callable(value):
-        return _plain(value) if not isinstance(value, _SYSTEM_TYPES) else value
+        return _plain(value)
 
     def callback(*args: Any, **kwargs: Any) -> Any:
         try:
@@ -504,9 +504,7 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if isinstance(value, dict):
         return {str(key): _plain(item) for key, item in value.items()}
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    if callable(value):
+    if value is None or isinstance(value, bool | int | float | str) or callable(value):
         return value
     raise StudentFailure("protocol", message=f"a value of type {type(value).__name__}")
 

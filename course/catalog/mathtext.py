@@ -455,10 +455,9 @@ class _Reader:
         return Row((self._node(),))
 
     def _node(self) -> Node:
-        token = self._next()
-        if token == "{":
-            self._at -= 1
+        if self._peek() == "{":
             return self._argument()
+        token = self._next()
         if token == r"\left":
             return self._fence(self._next(), sized=True)
         if token in _PAIRS:
@@ -535,9 +534,7 @@ def _refuse_ambiguous_slash(items: list[Node]) -> None:
 
 def is_factor(node: Node | None) -> bool:
     """Whether a node beside another such node means multiplication."""
-    if node is None:
-        return False
-    return not (
+    return node is not None and not (
         isinstance(node, Atom) and node.kind in ("binary", "relation", "punctuation", "space", "words")
     )
 

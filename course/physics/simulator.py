@@ -415,14 +415,10 @@ class Simulator:
         for body, state in zip(self.bodies, states, strict=True):
             body.state = state
 
-    def _sample(self) -> tuple[Array, Array, Array, Array]:
+    def _sample(self) -> list[Array]:
         states = self._states()
-        return (
-            np.array([state.position for state in states]),
-            np.array([state.velocity for state in states]),
-            np.array([state.orientation for state in states]),
-            np.array([state.angular_velocity for state in states]),
-        )
+        names = ("position", "velocity", "orientation", "angular_velocity")
+        return [np.array([getattr(state, name) for state in states]) for name in names]
 
 
 class _Flight:

@@ -19,7 +19,6 @@ import numpy as np
 
 from course.authoring.mistakes import Mistakes, Variant
 from course.catalog.load import Catalog
-from course.catalog.locate import content
 from course.catalog.models import Exercise
 from course.catalog.pack import pack_bytes
 from course.catalog.reading import read_text
@@ -35,7 +34,7 @@ from course.progress.workspace import write_atomically
 from course.scoring import kit
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.explain.fingerprint import reached_from
-from course.scoring.failures import place_of, reason_of
+from course.scoring.failures import opened_at, reason_of
 from course.scoring.judging.session import check_files
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.values import Inspected, as_march, overwritten
@@ -94,12 +93,8 @@ def blamed(path: Path, at: int | None = None) -> Iterator[None]:
     except CourseError:
         raise
     except Exception as error:
-        place = place_of(error)
-        file, line = (content().root / place[0], place[1]) if place else (path, at)
-        if isinstance(error, SyntaxError) and error.filename:
-            file, line = Path(error.filename), error.lineno
-        problem = f"it raises {reason_of(error)}."
-        raise ContentError(file, line, problem, help="Correct that line, or what it needs.") from error
+        problem, fix = f"it raises {reason_of(error)}.", "Correct that line, or what it needs."
+        raise ContentError(*opened_at(error, path, at), problem, help=fix) from error
 
 
 def accepted_sources(catalog: Catalog, exercise: Exercise) -> dict[str, bytes]:

@@ -203,12 +203,11 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
     """The sandbox's scenes hold together, the formulas in their texts too; ids of those looked at."""
     names = tuple(name for name in scene_ids() if only in {None, name})
     for name in names:
+        path = scene_path(name)
         *_, last = (folder / f"{name}.toml" for folder in scene_folders())
-        if last != scene_path(name) and last.is_file():
+        if last != path and last.is_file():
             problem = f"the program has a scene {name}, which is played instead."
             findings.add(last, None, "content", problem, "Rename the file, and its id.")
-    for name in names:
-        path = scene_path(name)
         with findings.refusals():
             if not blanks_in(path, findings):
                 _check_scene(path, read_scene(path), findings)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Collection
-from dataclasses import dataclass
 from pathlib import Path
 
 from course.authoring.coverage import IsCommand, audit_coverage
@@ -17,7 +16,7 @@ from course.authoring.exercises.diagnosis import audit_diagnoses
 from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
 from course.authoring.exercises.grading import GradeSources, declared_checks, grade_sources, solutions_folder
 from course.authoring.exercises.proofs import Proof, Prover, caught_by, plan
-from course.authoring.exercises.source import CheckSource, audit_style
+from course.authoring.exercises.source import audit_style
 from course.authoring.lessons.lint import (
     LinkChecker,
     Refused,
@@ -105,15 +104,6 @@ def _audit_question(catalog: Catalog, document: Document[Question], findings: Fi
         findings.add(document.path, fault.line, "quiz", fault.problem, fault.help)
 
 
-@dataclass(frozen=True, slots=True)
-class _Candidate:
-    """An exercise whose files are in order, ready to be graded."""
-
-    exercise: Exercise
-    checks: tuple[CheckSource, ...]
-    proofs: tuple[Proof, ...]
-
-
 def audit(
     catalog: Catalog,
     only: str | None = None,
@@ -166,15 +156,16 @@ def audit(
     whole: list[Exercise] = []
     read = [_read(catalog, exercise_id, findings, whole) for exercise_id in exercises]
     audit_style(catalog, whole, findings)
-    candidates = [candidate for candidate in read if candidate is not None]
-    graded, isolation = _grade(catalog, candidates, findings, on_progress, grade)
+    ready = [one for one in read if one is not None]
+    work = [(prover, proof) for prover, proofs in ready for proof in proofs]
+    graded, isolation = _grade(work, findings, on_progress, grade)
     return AuditReport(
         problems=findings.sorted(),
         lessons=lessons,
         exercises=exercises,
         questions=questions,
         scenes=scenes,
-        checks=sum(len(candidate.checks) for candidate in candidates),
+        checks=sum(len(prover.checks) for prover, _ in ready),
         graded=graded,
         isolation=isolation,
         seconds=time.monotonic() - started,
@@ -184,12 +175,9 @@ def audit(
 def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Ids of the lessons and exercises to look at; lesson files that nothing lists yet are among them."""
     files = {path.stem for path in catalog.content.lessons.glob("*.md")}
-    folders = _folders_in(catalog.content.exercises) - {WARM_UPS}
-    twice = sorted(folders & _folders_in(catalog.content.exercises / WARM_UPS))
-    if twice:
-        path = catalog.content.exercises / WARM_UPS / twice[0]
-        raise ContentError(path, None, "an exercise has this id, too.", help="Rename one of the folders.")
-    folders |= _folders_in(catalog.content.exercises / WARM_UPS)
+    catalog.warm_up_ids()  # refuses an id that an exercise has, too
+    place = catalog.content.exercises
+    folders = (_folders_in(place) - {WARM_UPS}) | _folders_in(place / WARM_UPS)
     listed = catalog.lesson_ids()
     lessons = (*listed, *sorted(files - set(listed)))
     exercises = tuple(sorted(folders))
@@ -215,12 +203,11 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
     """The sandbox's scenes hold together, the formulas in their texts too; ids of those looked at."""
     names = tuple(name for name in scene_ids() if only in {None, name})
     for name in names:
+        path = scene_path(name)
         *_, last = (folder / f"{name}.toml" for folder in scene_folders())
-        if last != scene_path(name) and last.is_file():
+        if last != path and last.is_file():
             problem = f"the program has a scene {name}, which is played instead."
             findings.add(last, None, "content", problem, "Rename the file, and its id.")
-    for name in names:
-        path = scene_path(name)
         with findings.refusals():
             if not blanks_in(path, findings):
                 _check_scene(path, read_scene(path), findings)
@@ -254,14 +241,16 @@ def _check_scene(path: Path, scene: Scene, findings: Findings) -> None:
         wrong(where, problem, fix)
 
 
-def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Exercise]) -> _Candidate | None:
-    """Audit the files of an exercise; None if they are not fit for grading.
+def _read(
+    catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Exercise]
+) -> tuple[Prover, tuple[Proof, ...]] | None:
+    """Audit the files of an exercise, and plan what is to be graded; None if they are not fit for it.
 
     Args:
         whole: gets the exercise, if none of its files is missing or is not Python.
     """
     own = Findings(findings.root)
-    candidate = None
+    ready = None
     with own.refusals():
         if not find_blanks(catalog, exercise_id, own):
             exercise = catalog.read_exercise(exercise_id)
@@ -276,9 +265,10 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Ex
             # without words breaks its check.
             if not own.of("check", "words"):
                 declared_checks(exercise, catalog)
-                candidate = _Candidate(exercise, checks, proofs)
+                caught = caught_by(catalog, exercise)
+                ready = Prover(exercise, checks, caught, Findings(findings.root)), proofs
     findings.problems += own.problems
-    return candidate
+    return ready
 
 
 def _check_readmes(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
@@ -293,18 +283,12 @@ def _check_readmes(catalog: Catalog, exercise: Exercise, findings: Findings) -> 
 
 
 def _grade(
-    catalog: Catalog,
-    candidates: list[_Candidate],
+    work: list[tuple[Prover, Proof]],
     findings: Findings,
     on_progress: Progress | None,
     grade: GradeSources,
 ) -> tuple[int, str]:
     """Grade what was planned; how many submissions got a score, and at which protection level."""
-    work: list[tuple[Prover, Proof]] = []
-    for candidate in candidates:
-        caught = caught_by(catalog, candidate.exercise)
-        prover = Prover(candidate.exercise, candidate.checks, caught, Findings(findings.root))
-        work += [(prover, proof) for proof in candidate.proofs]
     provers = tuple(dict.fromkeys(prover for prover, _ in work))
     if on_progress:
         on_progress(0, len(work), "")

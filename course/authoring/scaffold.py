@@ -86,34 +86,6 @@ class Function:
         return json.dumps(self._arguments(first))
 
 
-def new_warm_up(
-    catalog: Catalog,
-    warm_up_id: str,
-    functions: Sequence[Function] = (),
-    *,
-    title: str = "",
-    summary: str = "",
-    lesson: str = "",
-) -> tuple[Path, ...]:
-    """Write the files of a new warm-up: public checks only, two accepted variants, three mutants a function.
-
-    The arguments, and what is raised, are those of ``new_exercise``.
-    """
-    words = _words_of(catalog, warm_up_id, functions, title, summary, lesson)
-    words["order"] = 1 + max((one.order for one in catalog.warm_ups(words["lesson"])), default=0)
-    place = Path(WARM_UPS, words["id"])
-    student, solutions = catalog.content.exercises / place, catalog.content.instructors()[0] / place
-    files = {
-        student / name: (f"warm-up/{name}", words) for name in ("exercise.toml", "README.md", "checks.py")
-    }
-    files |= {
-        student / words["module"]: ("exercise/stub.py", words),
-        solutions / words["module"]: ("exercise/solution.py", words),
-        solutions / "mistakes.py": ("warm-up/mistakes.py", words),
-    }
-    return _write(files)
-
-
 def new_exercise(
     catalog: Catalog,
     exercise_id: str,
@@ -122,6 +94,7 @@ def new_exercise(
     title: str = "",
     summary: str = "",
     lesson: str = "",
+    warm_up: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a new exercise, with all that is known about it filled in.
 
@@ -129,15 +102,43 @@ def new_exercise(
         functions: that it asks for; one of the exercise's own name and an ``x`` if none is given.
         title, summary: its title, and one line for lists; blanks are left if empty.
         lesson: id of the one to read first; the last one if empty.
+        warm_up: a small one: public checks only, two accepted variants, three mutants a function.
 
     Returns:
         The files, in the order an author fills them.
     """
-    words = _words_of(catalog, exercise_id, functions, title, summary, lesson)
-    words["order"] = 1 + max((exercise.order for exercise in catalog.exercises()), default=0)
-    name, module, asked = words["id"], words["module"], words["functions"]
-    solutions, graders = (folder / name for folder in catalog.content.instructors())
-    student = catalog.content.exercises / name
+    name = ExerciseId(exercise_id)
+    if name in (*catalog.exercise_ids(), *catalog.warm_up_ids()):
+        raise _exists(f"There is a {name} already")
+    asked = tuple(functions) or (Function(f"{name.replace('-', '_')}(x)"),)
+    if len({function.name for function in asked}) < len(asked):
+        raise UsageError("Two functions have one name.", help="Name each one once.", code="bad_signature")
+    if lesson:
+        catalog.lesson(lesson)
+    lessons = catalog.lesson_ids()
+    lesson = lesson or (lessons[-1] if lessons else "<<FILL IN: id of the lesson to read first>>")
+    others = catalog.warm_ups(lesson) if warm_up else catalog.exercises()
+    module = _module(name.replace("-", "_"))
+    words = {
+        "id": name,
+        "module": module,
+        "functions": asked,
+        "each": MUTANTS_EACH,
+        "title": title or "<<FILL IN: what people call it>>",
+        "summary": summary or "<<FILL IN: what it is about, in one line>>",
+        "lesson": lesson,
+        "order": 1 + max((one.order for one in others), default=0),
+    }
+    place = Path(WARM_UPS, name) if warm_up else Path(name)
+    student = catalog.content.exercises / place
+    solutions, graders = (folder / place for folder in catalog.content.instructors())
+    if warm_up:
+        own = ("exercise.toml", "README.md", "checks.py")
+        files = {student / file: (f"warm-up/{file}", words) for file in own}
+        files[student / module] = ("exercise/stub.py", words)
+        files[solutions / module] = ("exercise/solution.py", words)
+        files[solutions / "mistakes.py"] = ("warm-up/mistakes.py", words)
+        return _write(files)
     files = {
         student / "exercise.toml": ("exercise.toml", words),
         student / "README.md": ("README.md", words),
@@ -153,31 +154,6 @@ def new_exercise(
         path = solutions / "accepted" / f"unusual_{number}.py"
         files[path] = ("unusual.py", words | {"f": function})
     return _write({path: (f"exercise/{template}", known) for path, (template, known) in files.items()})
-
-
-def _words_of(
-    catalog: Catalog, exercise_id: str, functions: Sequence[Function], title: str, summary: str, lesson: str
-) -> dict[str, Any]:
-    """The values for the templates of an exercise or a warm-up, except its place in the list."""
-    name = ExerciseId(exercise_id)
-    if name in (*catalog.exercise_ids(), *catalog.warm_up_ids()):
-        raise _exists(f"There is a {name} already")
-    asked = tuple(functions) or (Function(f"{name.replace('-', '_')}(x)"),)
-    names = [function.name for function in asked]
-    if len(set(names)) < len(names):
-        raise UsageError("Two functions have one name.", help="Name each one once.", code="bad_signature")
-    if lesson:
-        catalog.lesson(lesson)
-    lessons = catalog.lesson_ids()
-    return {
-        "id": name,
-        "module": _module(name.replace("-", "_")),
-        "functions": asked,
-        "each": MUTANTS_EACH,
-        "title": title or "<<FILL IN: what people call it>>",
-        "summary": summary or "<<FILL IN: what it is about, in one line>>",
-        "lesson": lesson or (lessons[-1] if lessons else "<<FILL IN: id of the lesson to read first>>"),
-    }
 
 
 def new_lesson(catalog: Catalog, lesson_id: str) -> tuple[Path, ...]:

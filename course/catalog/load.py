@@ -7,9 +7,10 @@ is read once and kept, after the rules that no type can express.
 import math
 import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache, cached_property
 from pathlib import Path
+from typing import TypeVar
 
 import msgspec
 
@@ -189,6 +190,7 @@ def check_rubric(document: Document[Rubric]) -> None:
 
 #: A number of an exercise or a lesson has fewer digits than this.
 _DIGITS = 5
+T = TypeVar("T")
 
 
 class Catalog:
@@ -253,10 +255,7 @@ class Catalog:
 
     def lesson_called(self, words: str) -> Lesson:
         """One lesson, by its id or its place in the syllabus, "1" first."""
-        ids = self.lesson_ids()
-        if words.isdecimal() and len(words) < _DIGITS and 1 <= int(words) <= len(ids):
-            return self._lesson(ids[int(words) - 1])
-        return self.lesson(words)
+        return self.lesson(_numbered(words, self.lesson_ids) or words)
 
     def read_lesson(self, lesson_id: str) -> Lesson:
         """The head of ``<id>.md``, whether or not the syllabus lists it; not kept."""
@@ -335,17 +334,11 @@ class Catalog:
         Raises:
             NotFoundError: nothing is called so.
         """
-        return self._called(words, self.exercises)
+        return _numbered(words, self.exercises) or self.exercise(words)
 
     def warm_up_called(self, words: str) -> Exercise:
         """One warm-up, likewise; an exercise, if its id is given."""
-        return self._called(words, self.warm_ups)
-
-    def _called(self, words: str, among: Callable[[], tuple[Exercise, ...]]) -> Exercise:
-        every = among() if words.isdecimal() and len(words) < _DIGITS else ()
-        if 1 <= (place := int(words) if every else 0) <= len(every):
-            return every[place - 1]
-        return self.exercise(words)
+        return _numbered(words, self.warm_ups) or self.exercise(words)
 
     def place_of(self, exercise: Exercise) -> int:
         """The number that it is called by: its place among the exercises, or the warm-ups, from 1."""
@@ -355,10 +348,10 @@ class Catalog:
     def read_exercise(self, exercise_id: str) -> Exercise:
         """The declaration in the folder of this name; not kept."""
         folder = self.content.exercise_folder(exercise_id)
-        document = read_document(folder / "exercise.toml", Exercise, reserved=("folder",))
+        document = read_document(folder / "exercise.toml", Exercise, reserved=("folder", "slow"))
         check_exercise(document)
         measured = self.times.exercises.get(exercise_id)
-        slow = measured.slow if measured else document.value.slow
+        slow = measured.slow if measured else {}
         return msgspec.structs.replace(document.value, folder=str(folder), slow=slow)
 
     @property
@@ -392,6 +385,13 @@ def _declared_in(folder: Path) -> tuple[str, ...]:
     if not folder.is_dir():
         return ()
     return tuple(sorted(one.name for one in folder.iterdir() if (one / "exercise.toml").is_file()))
+
+
+def _numbered(words: str, among: Callable[[], Sequence[T]]) -> T | None:
+    """What stands at the place that some words are the number of, "1" first; None if they are of none."""
+    place = int(words) if words.isdecimal() and len(words) < _DIGITS else 0
+    every = among() if place else ()
+    return every[place - 1] if 1 <= place <= len(every) else None
 
 
 def _not_found(kind: str, wanted: str, known: Iterable[str], command: str) -> NotFoundError:

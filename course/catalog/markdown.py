@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from course.catalog import blocks as b
 from course.catalog.mathtext import MathError, math_spoken, math_text
@@ -89,18 +90,15 @@ class _Builder:
     def blocks(self, nodes: list[SyntaxTreeNode]) -> tuple[b.Block, ...]:
         out: list[b.Block] = []
         for node in nodes:
-            block = self._block(node, out[-1] if out else None)
-            if isinstance(block, _Completed):
-                out[-1] = block.block
-            else:
-                out.append(block)
+            out.append(self._block(node, out))
         for block in out:
             if isinstance(block, b.Diagram) and not block.drawing:
                 problem = "the diagram has no drawing"
                 raise self._wrong(block.line, problem, "Put a ```drawing fence right after it.")
         return tuple(out)
 
-    def _block(self, node: SyntaxTreeNode, before: b.Block | None) -> b.Block | _Completed:  # noqa: PLR0911 - one return per kind
+    def _block(self, node: SyntaxTreeNode, above: list[b.Block]) -> b.Block:  # noqa: PLR0911 - one return per kind
+        """A block; one above that it completes is taken from there."""
         line = self._line(node)
         match node.type:
             case "heading":
@@ -112,7 +110,7 @@ class _Builder:
             case "table":
                 return self._table(node, line)
             case "fence":
-                return self._fence(node, line, before)
+                return self._fence(node, line, above)
             case "math_block":
                 return self._math(node, line)
             case "blockquote":
@@ -178,18 +176,20 @@ class _Builder:
         rows = tuple(tuple(self._inlines_of(cell) for cell in row.children) for row in body)
         return b.Table(line, tuple(self._inlines_of(cell) for cell in head), rows, align)
 
-    def _fence(self, node: SyntaxTreeNode, line: int, before: b.Block | None) -> b.Block | _Completed:  # noqa: PLR0911 - one return per kind
+    def _fence(self, node: SyntaxTreeNode, line: int, above: list[b.Block]) -> b.Block:  # noqa: PLR0911 - one return per kind
         text = node.content.rstrip("\n")
         rows = node.content.removesuffix("\n").count("\n") + bool(node.content)
         if node.map and node.map[1] - node.map[0] < rows + 2:
             raise self._wrong(line, "a fence that is never closed", "End it with ``` on a line of its own.")
+        before = above[-1] if above else None
         match node.info.split():
             case ["python"]:
                 return b.CodeCell(line, text)
             case ["python", "hidden"]:
                 return b.CodeCell(line, text, hidden=True)
             case ["output"] if isinstance(before, b.CodeCell) and before.output is None and not before.hidden:
-                return _Completed(b.CodeCell(before.line, before.source, text, output_line=line))
+                above.pop()
+                return replace(before, output=text, output_line=line)
             case ["output"]:
                 problem = "output that follows no shown code cell"
                 raise self._wrong(line, problem, "Put it right after a ```python fence.")
@@ -200,7 +200,8 @@ class _Builder:
             case ["mermaid"]:
                 return self._diagram(text, line)
             case ["drawing"] if isinstance(before, b.Diagram) and not before.drawing:
-                return _Completed(b.Diagram(before.line, before.mermaid, text, before.description))
+                above.pop()
+                return replace(before, drawing=text)
             case ["drawing"]:
                 problem = "a drawing that follows no diagram"
                 raise self._wrong(line, problem, "Put it right after a ```mermaid fence.")
@@ -312,12 +313,6 @@ class _Builder:
             raise self._wrong(line, problem, fix) from error
 
 
-class _Completed(NamedTuple):
-    """The block before, completed by this one."""
-
-    block: b.Block
-
-
 def _stripped(line: b.Inlines) -> b.Inlines:
     """A line without the white space that its removed first piece left behind."""
     if line and isinstance(line[0], b.Text):
@@ -328,11 +323,9 @@ def _stripped(line: b.Inlines) -> b.Inlines:
 
 def _label(inner: tuple[b.Block, ...]) -> tuple[str, tuple[b.Block, ...]]:
     """The bold word a block quote begins with, in lower case, and the quote without it."""
-    first = inner[0] if inner else None
-    if not isinstance(first, b.Paragraph) or not isinstance(first.inlines[0], b.Span):
-        return "", inner
-    if first.inlines[0].style != "strong":
-        return "", inner
-    label = b.plain_text(first.inlines[0].children).strip().rstrip(".:?").lower()
-    rest = _stripped(first.inlines[1:])
-    return label, ((b.Paragraph(first.line, rest),) if rest else ()) + inner[1:]
+    match inner:
+        case (b.Paragraph(line, (b.Span("strong", words), *more)), *others):
+            label = b.plain_text(words).strip().rstrip(".:?").lower()
+            rest = _stripped(tuple(more))
+            return label, (*((b.Paragraph(line, rest),) if rest else ()), *others)
+    return "", inner

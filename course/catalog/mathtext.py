@@ -323,10 +323,8 @@ _SYMBOLS = {
     "times": Atom("binary", "×", "times"),
     "pm": Atom("binary", "±", "plus or minus"),
     "approx": Atom("relation", "≈", "is about"),
-    "le": Atom("relation", "≤", "is at most"),
-    "leq": Atom("relation", "≤", "is at most"),
-    "ge": Atom("relation", "≥", "is at least"),
-    "geq": Atom("relation", "≥", "is at least"),
+    **dict.fromkeys(("le", "leq"), Atom("relation", "≤", "is at most")),
+    **dict.fromkeys(("ge", "geq"), Atom("relation", "≥", "is at least")),
     "ne": Atom("relation", "≠", "is not"),
     "ll": Atom("relation", "≪", "is much less than"),
     "gg": Atom("relation", "≫", "is much greater than"),
@@ -340,11 +338,8 @@ _SYMBOLS = {
     "circ": Atom("letter", "°", "degrees"),
     "top": Atom("letter", "ᵀ", "transpose"),
     "%": Atom("letter", "%", "percent"),
-    "ldots": Atom("letter", "…", "and so on"),
-    "dots": Atom("letter", "…", "and so on"),
-    ",": Atom("space", " ", ""),
-    ";": Atom("space", " ", ""),
-    " ": Atom("space", " ", ""),
+    **dict.fromkeys(("ldots", "dots"), Atom("letter", "…", "and so on")),
+    **dict.fromkeys((",", ";", " "), Atom("space", " ", "")),
     "quad": Atom("space", "   ", ""),
     "qquad": Atom("space", "      ", ""),
 }
@@ -439,18 +434,13 @@ class _Reader:
             raise MathError(f"{wanted} was expected, {found} found")
 
     def _scripted(self, base: Node) -> Node:
-        sub: Row | None = None
-        sup: Row | None = None
-        while (token := self._peek()) in ("_", "^"):
-            self._next()
-            script = self._argument()
-            if token == "_" and sub is None:
-                sub = script
-            elif token == "^" and sup is None:
-                sup = script
-            else:
+        scripts: dict[str, Row] = {}
+        while self._peek() in ("_", "^"):
+            token, script = self._next(), self._argument()
+            if token in scripts:
                 raise MathError(f"two {token} on one symbol")
-        return Script(base, sub, sup) if sub or sup else base
+            scripts[token] = script
+        return Script(base, scripts.get("_"), scripts.get("^")) if scripts else base
 
     def _argument(self) -> Row:
         if self._peek() == "{":
@@ -465,10 +455,9 @@ class _Reader:
         return Row((self._node(),))
 
     def _node(self) -> Node:
-        token = self._next()
-        if token == "{":
-            self._at -= 1
+        if self._peek() == "{":
             return self._argument()
+        token = self._next()
         if token == r"\left":
             return self._fence(self._next(), sized=True)
         if token in _PAIRS:
@@ -521,20 +510,16 @@ class _Reader:
         if name != "aligned":
             raise MathError(f"the environment {name} has no agreed text form")
         ends = frozenset({"&", "\\\\", r"\end"})
-        lines: list[tuple[Row, ...]] = []
-        cells: list[Row] = []
-        while True:
-            cells.append(self.row(ends))
+        lines: list[list[Row]] = [[]]
+        token = ""
+        while token != r"\end":
+            lines[-1].append(self.row(ends))
             token = self._next()
-            if token == "&":
-                continue
-            lines.append(tuple(cells))
-            cells = []
-            if token == r"\end":
-                break
+            if token == "\\\\":
+                lines.append([])
         if self._words() != name:
             raise MathError(f"\\end{{{name}}} is missing")
-        return Grid(tuple(lines))
+        return Grid(tuple(map(tuple, lines)))
 
 
 def _refuse_ambiguous_slash(items: list[Node]) -> None:
@@ -549,9 +534,7 @@ def _refuse_ambiguous_slash(items: list[Node]) -> None:
 
 def is_factor(node: Node | None) -> bool:
     """Whether a node beside another such node means multiplication."""
-    if node is None:
-        return False
-    return not (
+    return node is not None and not (
         isinstance(node, Atom) and node.kind in ("binary", "relation", "punctuation", "space", "words")
     )
 

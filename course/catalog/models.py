@@ -113,7 +113,7 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         slow: public checks that take more than ``QUICK`` of a right solution, and how long at most, in s of
             CPU time; from ``times.json``, which ``course author build`` writes.
         after: slug of the section of its lesson that a warm-up follows; "" for the end of the lesson.
-        folder: where the files are; set by the loader.
+        folder: where the files are; set by the loader, like ``slow``.
     """
 
     format_version: int

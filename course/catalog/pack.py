@@ -57,21 +57,19 @@ class PackedFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     sha256: str
 
 
-class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """``manifest.json``."""
-
-    format: str
-    format_version: int
-    course_id: str
-    course_version: str
-    files: tuple[PackedFile, ...]
-
-
 class _Version(msgspec.Struct, frozen=True):
     """As much of a manifest as every format has."""
 
     format: str
     format_version: int
+
+
+class Manifest(_Version, frozen=True, forbid_unknown_fields=True):
+    """``manifest.json``."""
+
+    course_id: str
+    course_version: str
+    files: tuple[PackedFile, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,16 +11,16 @@ import contextlib
 import datetime
 import json
 import os
-import queue
 import signal
 import statistics
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import IO, Any, Self, cast
 
@@ -59,7 +59,6 @@ class Request:
         repeat: how often each measurement is made.
         quick: fewer steps, starts and repetitions; the measured values may differ a little.
         fresh: measure again even if the result is stored.
-        deadline: s for one measurement.
     """
 
     engines: tuple[str, ...] = ()
@@ -68,7 +67,6 @@ class Request:
     repeat: int = 1
     quick: bool = False
     fresh: bool = False
-    deadline: float = DEADLINE_S
 
 
 @dataclass(slots=True)
@@ -107,18 +105,9 @@ def state_of(info: EngineInfo, *, probe: bool = False) -> EngineState:
         with EngineProcess(info.id) as process:
             reply = process.ask({"do": "options", "scenario": "free-fall", "setting": "default"}, 30.0)
         trouble = "" if reply["status"] == OK else f"installed, but cannot start: {reply['message']}"
-    return EngineState(
-        id=info.id,
-        name=info.name,
-        package=info.package,
-        extra=info.extra,
-        licence=info.licence,
-        about=info.about,
-        version=found.version,
-        usable=found.installed and not trouble,
-        missing=found.missing or trouble,
-        command=found.command,
-    )
+    usable, missing = found.installed and not trouble, found.missing or trouble
+    known = {**asdict(info), **asdict(found), "usable": usable, "missing": missing}
+    return msgspec.convert(known, EngineState)
 
 
 def compare(request: Request, progress: Progress = lambda _done, _total, _what: None) -> Comparison:
@@ -237,8 +226,7 @@ def _untuned(run: _Run, process: EngineProcess, job: Row) -> Row | None:
     twin = run.rows.get(msgspec.structs.replace(job, setting=DEFAULT).place)
     if twin is None or not twin.ok:
         return None
-    question = {"do": "options", "scenario": job.scenario, "setting": TUNED}
-    reply = process.ask(question, run.request.deadline)
+    reply = process.ask({"do": "options", "scenario": job.scenario, "setting": TUNED})
     if reply["status"] != OK or reply["options"]:
         return None
     return msgspec.structs.replace(twin, setting=TUNED)
@@ -254,7 +242,7 @@ def _accuracy(run: _Run, process: EngineProcess, job: Row) -> Row:
     }
     values: list[float] = []
     for _ in range(run.request.repeat):
-        reply = process.ask(message, run.request.deadline)
+        reply = process.ask(message)
         if reply["status"] != OK:
             return _without(job, reply)
         values.append(reply["value"])
@@ -263,7 +251,7 @@ def _accuracy(run: _Run, process: EngineProcess, job: Row) -> Row:
 
 def _speed(run: _Run, job: Row) -> Row:
     """The rate with a hundred boxes as a multiple of pymunk's, from stretches taken in turn."""
-    quick, deadline = run.request.quick, run.request.deadline
+    quick = run.request.quick
     pairs = (_PAIRS_QUICK if quick else _PAIRS) * run.request.repeat
     stretch = _STRETCH_QUICK_S if quick else _STRETCH_S
     build = {"do": "boxes", "scenario": BOXES, "dt": job.dt}
@@ -276,14 +264,14 @@ def _speed(run: _Run, job: Row) -> Row:
         known: dict[str, Any] = {}
         for process, message in reversed(asked):
             for question in (message, {"do": "chunk", "steps": _TRIAL_STEPS}):
-                reply = process.ask(question, deadline)
+                reply = process.ask(question)
                 if reply["status"] != OK:
                     return _without(job, reply)
                 known = reply if "options" in reply else known
             steps.insert(0, max(5, round(_TRIAL_STEPS * stretch / reply["seconds"])))
         for _ in range(pairs):
             for process, n, found in ((other, steps[1], rates[1]), (one, steps[0], rates[0])):
-                reply = process.ask({"do": "chunk", "steps": n}, deadline)
+                reply = process.ask({"do": "chunk", "steps": n})
                 if reply["status"] != OK:
                     return _without(job, reply)
                 found.append(n / reply["seconds"])
@@ -317,7 +305,6 @@ class EngineProcess:
         self.engine = engine
         self._command = command or [sys.executable, "-P", "-m", "course.engines.worker", engine]
         self._process: subprocess.Popen[str] | None = None
-        self._lines: queue.Queue[str | None] = queue.Queue()
         self._words: Any = None
 
     def __enter__(self) -> Self:
@@ -330,7 +317,7 @@ class EngineProcess:
     def pid(self) -> int | None:
         return self._process.pid if self._process else None
 
-    def ask(self, job: Mapping[str, Any], seconds: float) -> dict[str, Any]:
+    def ask(self, job: Mapping[str, Any], seconds: float = DEADLINE_S) -> dict[str, Any]:
         """The reply to a job, or a reply that says why there is none.
 
         Args:
@@ -350,7 +337,6 @@ class EngineProcess:
         return self._read(seconds)
 
     def _start(self) -> dict[str, Any]:
-        self._lines = queue.Queue()
         self._words = tempfile.TemporaryFile()  # noqa: SIM115 - closed in close()
         root = str(Path(__file__).parents[2])
         path = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH", ""))))
@@ -367,7 +353,6 @@ class EngineProcess:
         except OSError as error:
             self._words.close()
             return {"status": "unavailable", "message": f"No process could be started ({error.strerror})."}
-        threading.Thread(target=_pump, args=(self._process, self._lines), daemon=True).start()
         reply = self._read(START_S)
         if reply["status"] != "ok":
             self.close()
@@ -376,13 +361,19 @@ class EngineProcess:
         return reply
 
     def _read(self, seconds: float) -> dict[str, Any]:
+        process = cast("subprocess.Popen[str]", self._process)
+        began = time.monotonic()
+        too_long = threading.Timer(seconds, process.kill)
+        too_long.start()
         try:
-            line = self._lines.get(timeout=seconds)
-        except queue.Empty:
+            line = cast("IO[str]", process.stdout).readline()
+        finally:
+            too_long.cancel()
+        if not line.endswith("\n"):
+            if time.monotonic() - began < seconds:
+                return self._died()
             self.close()
             return {"status": "deadline", "message": f"No answer within {seconds:g} s; it was ended."}
-        if line is None:
-            return self._died()
         try:
             reply: dict[str, Any] = json.loads(line)
         except ValueError:
@@ -400,10 +391,8 @@ class EngineProcess:
             code = process.wait()
         how = f"It ended with exit code {code}."
         if code < 0:
-            try:
-                how = f"It was ended by {signal.Signals(-code).name}."
-            except ValueError:
-                how = f"It was ended by signal {-code}."
+            named = {one.value: one.name for one in signal.Signals}
+            how = f"It was ended by {named.get(-code, f'signal {-code}')}."
         words = self._last_words()
         self.close()
         return {"status": "crash", "message": f"{how} {words}".strip()}
@@ -427,12 +416,3 @@ class EngineProcess:
                         pipe.close()
         if self._words is not None:
             self._words.close()
-
-
-def _pump(process: subprocess.Popen[str], lines: queue.Queue[str | None]) -> None:
-    """Move replies from the pipe to the queue; None at the end."""
-    # The pipe may be closed while it is read: the end, too.
-    with contextlib.suppress(OSError, ValueError):
-        for line in process.stdout or ():
-            lines.put(line)
-    lines.put(None)

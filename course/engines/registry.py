@@ -1,5 +1,6 @@
 """Which engines exist, and which of them this machine has."""
 
+import contextlib
 import importlib.metadata
 from dataclasses import dataclass
 from importlib import import_module
@@ -100,10 +101,8 @@ class Availability:
 
 def availability(info: EngineInfo) -> Availability:
     """Whether an engine's package is installed, without importing it."""
-    try:
+    with contextlib.suppress(importlib.metadata.PackageNotFoundError):
         return Availability(importlib.metadata.version(info.package))
-    except importlib.metadata.PackageNotFoundError:
-        pass
     wanted = requirement_of(info.package)
     if not wanted.applies:
         return Availability(None, wanted.unserved)

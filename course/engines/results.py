@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import platform
+import re
 import subprocess
 from pathlib import Path
 from typing import Any, Literal
@@ -13,6 +14,7 @@ from typing import Any, Literal
 import msgspec
 
 from course.errors import MissingCapabilityError
+from course.printable import counted
 from course.progress.workspace import write_atomically
 
 # ---
@@ -28,8 +30,7 @@ class Machine(msgspec.Struct, frozen=True):
     python: str
 
     def __str__(self) -> str:
-        cores = f"{self.cores} core{'s' if self.cores != 1 else ''}"
-        return f"{self.cpu}, {cores}, {self.system}, Python {self.python}"
+        return f"{self.cpu}, {counted(self.cores, 'core')}, {self.system}, Python {self.python}"
 
 
 def this_machine() -> Machine:
@@ -39,26 +40,14 @@ def this_machine() -> Machine:
 
 
 def _cpu() -> str:
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:  # noqa: PTH123 - no file, a kernel's answer
-            for line in file:
-                if line.startswith("model name"):
-                    return line.partition(":")[2].strip()
-    except OSError:
-        pass
+    with contextlib.suppress(OSError):
+        told = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
+        if found := re.search(r"^model name\s*:(.*)", told, re.MULTILINE):
+            return found[1].strip()
     if platform.system() == "Darwin":
-        try:
-            asked = subprocess.run(
-                ["/usr/sbin/sysctl", "-n", "machdep.cpu.brand_string"],
-                capture_output=True,
-                text=True,
-                timeout=5,
-                check=True,
-            )
-        except (OSError, subprocess.SubprocessError):
-            pass
-        else:
-            return asked.stdout.strip()
+        asked = ["/usr/sbin/sysctl", "-n", "machdep.cpu.brand_string"]
+        with contextlib.suppress(OSError, subprocess.SubprocessError):
+            return subprocess.check_output(asked, stderr=subprocess.DEVNULL, text=True, timeout=5).strip()
     return platform.processor() or platform.machine() or "unknown processor"
 
 

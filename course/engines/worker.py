@@ -66,7 +66,7 @@ class EngineServer:
         def build(scene: Scene) -> World:
             return self._adapter(scene, tuning.options)
 
-        if job["do"] == "boxes":
+        if scenario.run is None:
             self._boxes = build(boxes_scene(job["dt"]))
             self._boxes.step(round(0.25 / job["dt"]))
             return {"status": "ok", "contacts": len(self._boxes.overlaps()), **known}

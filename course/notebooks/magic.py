@@ -12,6 +12,7 @@ import os
 import re
 import subprocess
 import sys
+from collections import defaultdict
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, TypeVar
@@ -175,14 +176,11 @@ def points(exercise_id: str, task: str) -> float:
 def _public_points(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
     from course.scoring.checks.collected import CollectedChecks
 
-    collected = CollectedChecks(check_files(exercise, catalog, "public"))
-    try:
-        worth: dict[str, float] = {}
+    worth: dict[str, float] = defaultdict(float)
+    with contextlib.closing(CollectedChecks(check_files(exercise, catalog, "public"))) as collected:
         for check in collected.checks:
-            worth[check.task] = worth.get(check.task, 0.0) + check.points
-        return worth
-    finally:
-        collected.close()
+            worth[check.task] += check.points
+    return worth
 
 
 def _marked(cell: Cell, worth: Mapping[str, float]) -> Cell:

@@ -183,8 +183,7 @@ def _read(file: Path) -> dict[str, Any]:
 
 
 def _ended(process: subprocess.Popen[bytes]) -> None:
-    if process.poll() is None:
-        process.terminate()
+    process.terminate()
     try:
         process.wait(_GRACE)
     except subprocess.TimeoutExpired:

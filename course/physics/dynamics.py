@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -118,9 +117,8 @@ class TwoLinkArm:
         angle1, angle2 = q[..., 0], q[..., 0] + q[..., 1]
         spin1, spin2 = v[..., 0], v[..., 0] + v[..., 1]
         turn1, turn2 = a[..., 0], a[..., 0] + a[..., 1]
-        up = np.array(
-            [0.0, self.g]
-        )  # being at rest in gravity is the same as accelerating upwards without it
+        # Being at rest in gravity is the same as accelerating upwards without it.
+        up = np.array([0.0, self.g])
         elbow = up + _swing(self.length1, angle1, spin1, turn1)
         force2 = self.mass2 * (elbow + _swing(self.centre2, angle2, spin2, turn2))
         force1 = self.mass1 * (up + _swing(self.centre1, angle1, spin1, turn1))
@@ -195,10 +193,6 @@ class PassiveArm:
         """Joint accelerations, rad/s², shape (..., 2)."""
         return self.arm.forward(q, v, np.zeros(2))
 
-    def params(self) -> dict[str, Any]:
-        """The numbers of the arm, by name."""
-        return asdict(self.arm)
-
 
 @dataclass(frozen=True, slots=True)
 class HandPath:
@@ -267,10 +261,6 @@ class DrivenArm:
         wanted, rate, change = self.path.joints(self.planned, t)
         correction = self.stiffness * (wanted - np.asarray(q)) + self.damping * (rate - np.asarray(v))
         return self.arm.forward(q, v, self.planned.inverse(wanted, rate, change) + correction)
-
-    def params(self) -> dict[str, Any]:
-        """The numbers of the arm that moves, by name."""
-        return asdict(self.arm)
 
 
 def smooth_share(s: ArrayLike) -> tuple[Array, Array, Array]:

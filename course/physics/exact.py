@@ -57,14 +57,11 @@ def forced_oscillator(
     if gap == 0.0:
         raise ValueError("This form is for a drive off resonance only.")
     far = system.amplitude / gap
-    w, drive = system.omega, system.drive
+    drive = system.drive
     q = np.asarray(q0, dtype=float) - far * math.cos(drive * t0)
     v = np.asarray(v0, dtype=float) + far * drive * math.sin(drive * t0)
-    c, s = math.cos(w * (t - t0)), math.sin(w * (t - t0))
-    return (
-        c * q + (s / w) * v + far * math.cos(drive * t),
-        c * v - (w * s) * q - far * drive * math.sin(drive * t),
-    )
+    q, v = oscillator(Oscillator(system.omega), q, v, t - t0)  # what is left of the start
+    return q + far * math.cos(drive * t), v - far * drive * math.sin(drive * t)
 
 
 def solution(

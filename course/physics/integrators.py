@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from course.physics.state import Array
-from course.physics.systems import System
+from course.physics.systems import Acceleration
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class Stepper(Protocol):
 
     order: ClassVar[int]
 
-    def advance(self, system: System, state: State, h: float) -> State:
+    def advance(self, system: Acceleration, state: State, h: float) -> State:
         """The state h (s) after ``state``."""
         ...
 
@@ -73,7 +73,7 @@ class ExplicitEuler:
 
     order: ClassVar[int] = 1
 
-    def advance(self, system: System, state: State, h: float) -> State:
+    def advance(self, system: Acceleration, state: State, h: float) -> State:
         return state.shifted(h, h * state.v, h * system(state.t, state.q, state.v))
 
 
@@ -90,7 +90,7 @@ class SemiImplicitEuler:
 
     order: ClassVar[int] = 1
 
-    def advance(self, system: System, state: State, h: float) -> State:
+    def advance(self, system: Acceleration, state: State, h: float) -> State:
         if self.position_first:
             q = state.q + h * state.v
             return State(state.t + h, q, state.v + h * system(state.t + h, q, state.v))
@@ -110,7 +110,7 @@ class VelocityVerlet:
 
     order: ClassVar[int] = 2
 
-    def advance(self, system: System, state: State, h: float) -> State:
+    def advance(self, system: Acceleration, state: State, h: float) -> State:
         half = 0.5 * h
         if self.drift_first:
             q_middle = state.q + half * state.v
@@ -127,7 +127,7 @@ class RK4:
 
     order: ClassVar[int] = 4
 
-    def advance(self, system: System, state: State, h: float) -> State:
+    def advance(self, system: Acceleration, state: State, h: float) -> State:
         def slopes(stage: State) -> tuple[Array, Array]:
             return stage.v, system(stage.t, stage.q, stage.v)
 
@@ -157,7 +157,7 @@ class Trajectory(NamedTuple):
     v: Array
 
 
-def trajectory(stepper: Stepper, system: System, start: State, h: float, n: int) -> Trajectory:
+def trajectory(stepper: Stepper, system: Acceleration, start: State, h: float, n: int) -> Trajectory:
     """Take n steps of h (s) and keep every state, the first included.
 
     Times are start.t + i h, not a running sum, so they do not drift.

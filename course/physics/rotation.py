@@ -213,15 +213,12 @@ class ByMomentum:
         return torque
 
 
-class ByQuaternion:
+class ByQuaternion(ByMomentum):
     """The same with the quaternion as position and its derivative as velocity.
 
     It is of the method's order about any axis. The length of the quaternion is that of a rotation to the
     method's order only, and divided out.
     """
-
-    def __init__(self, inertia: Array, start: Spin) -> None:
-        self._inertia, self._start = inertia, start
 
     def state(self) -> tuple[Array, Array]:
         return self._start.orientation, 0.5 * product(self._start.orientation, _pure(self._start[1]))

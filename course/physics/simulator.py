@@ -415,14 +415,10 @@ class Simulator:
         for body, state in zip(self.bodies, states, strict=True):
             body.state = state
 
-    def _sample(self) -> tuple[Array, Array, Array, Array]:
+    def _sample(self) -> list[Array]:
         states = self._states()
-        return (
-            np.array([state.position for state in states]),
-            np.array([state.velocity for state in states]),
-            np.array([state.orientation for state in states]),
-            np.array([state.angular_velocity for state in states]),
-        )
+        names = ("position", "velocity", "orientation", "angular_velocity")
+        return [np.array([getattr(state, name) for state in states]) for name in names]
 
 
 class _Flight:
@@ -440,7 +436,7 @@ class _Flight:
             q, w = (np.array([self._spins[i][part] for i in self._turns]) for part in (0, 1))
             # What any law twists is of the method's order; what turns freely keeps its momentum.
             form = ByQuaternion if engine.laws and engine.stepper.order > 2 else ByMomentum
-            self._turning: ByMomentum | ByQuaternion = form(engine._inertia, Spin(q, w))
+            self._turning = form(engine._inertia, Spin(q, w))
 
     def start(self) -> State:
         """Where the motion begins; q and v have shape (B, ..., 3) or, with rotations, (B, ..., 6 or 7)."""
@@ -478,6 +474,3 @@ class _Flight:
             return a
         rotations = q[self._turns, ..., 3:], v[self._turns, ..., 3:]
         return self._joined(a, self._turning.rate(torque[self._turns], *rotations))
-
-    def params(self) -> dict[str, Any]:
-        return {"h": self._engine.h, "gravity": self._engine.gravity}

@@ -29,12 +29,16 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
-class System(Protocol):
-    """An object that returns an acceleration and knows its own parameters."""
+class Acceleration(Protocol):
+    """An object that returns an acceleration: any method can step it forward."""
 
     def __call__(self, t: float, q: ArrayLike, v: ArrayLike) -> Array:
         """Acceleration at time t (s), position q (m or rad), velocity v; shape (d,)."""
         ...
+
+
+class System(Acceleration, Protocol):
+    """One that also knows its own parameters."""
 
     def params(self) -> dict[str, Any]:
         """The numbers that rebuild this system."""

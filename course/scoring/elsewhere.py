@@ -223,74 +223,55 @@ _ONE_LESS = (
     "to subtract it from every value, make an array first: `np.asarray(...)`."
 )
 #: What Python says -> what to do about it. "{0}" is what the first group found.
-_CURES: tuple[tuple[str, str], ...] = (
-    (
-        r"UnboundLocalError.*variable '(\w+)'",
-        "Give `{0}` a value before the loop, or the `if`, that changes it.",
+_CURES: dict[str, str] = {
+    r"UnboundLocalError.*variable '(\w+)'": (
+        "Give `{0}` a value before the loop, or the `if`, that changes it."
     ),
-    (
-        r"NameError: name '(\w+)'",
-        "Is `{0}` spelled like this everywhere, and set before this line is reached?",
+    r"NameError: name '(\w+)'": "Is `{0}` spelled like this everywhere, and set before this line is reached?",
+    r"can't multiply sequence by non-int": "A list times a number does not multiply its values. " + _AN_ARRAY,
+    r"TypeError.*'NoneType'": (
+        "Something here is None: a function without a `return`, or a variable nobody has set."
     ),
-    (
-        r"can't multiply sequence by non-int",
-        "A list times a number does not multiply its values. " + _AN_ARRAY,
+    r"TypeError: '(?:float|int|list|tuple)' object is not callable": (
+        "Brackets after a value call it. Is a `*` missing, or has a variable taken the name of a function?"
     ),
-    (
-        r"TypeError.*'NoneType'",
-        "Something here is None: a function without a `return`, or a variable nobody has set.",
+    r"TypeError: '(?:float|int)' object is not iterable": "It is one number, and a list is needed here.",
+    r"TypeError: '(?:float|int)' object is not subscriptable": (
+        "It is one number, and a number has no [index]."
     ),
-    (
-        r"TypeError: '(?:float|int|list|tuple)' object is not callable",
-        "Brackets after a value call it. Is a `*` missing, or has a variable taken the name of a function?",
+    r"TypeError: list indices must be .* not float": (
+        "An index is an int: divide with `//`, or use `int(...)`."
     ),
-    (r"TypeError: '(?:float|int)' object is not iterable", "It is one number, and a list is needed here."),
-    (
-        r"TypeError: '(?:float|int)' object is not subscriptable",
-        "It is one number, and a number has no [index].",
+    r"TypeError: list indices must be .* not tuple": (
+        "A list of lists is indexed twice: `a[i][j]`, not `a[i, j]`."
     ),
-    (
-        r"TypeError: list indices must be .* not float",
-        "An index is an int: divide with `//`, or use `int(...)`.",
+    r"IndexError: list index out of range": (
+        "A list of n values has the indices 0 to n - 1. Which index is it here?"
     ),
-    (
-        r"TypeError: list indices must be .* not tuple",
-        "A list of lists is indexed twice: `a[i][j]`, not `a[i, j]`.",
+    r"IndexError.*out of bounds": "An axis of n values has the indices 0 to n - 1. Which index is it here?",
+    r"ZeroDivisionError": "What is divided by is zero here. Which value makes it so?",
+    r"ValueError: (?:math domain error|expected a (?:non-?negative|positive) (?:input|number))": (
+        "It is the root or the logarithm of a negative number, or an arc sine of more than 1: print it."
     ),
-    (
-        r"IndexError: list index out of range",
-        "A list of n values has the indices 0 to n - 1. Which index is it here?",
-    ),
-    (r"IndexError.*out of bounds", "An axis of n values has the indices 0 to n - 1. Which index is it here?"),
-    (r"ZeroDivisionError", "What is divided by is zero here. Which value makes it so?"),
-    (
-        r"ValueError: (?:math domain error|expected a (?:non-?negative|positive) (?:input|number))",
-        "It is the root or the logarithm of a negative number, or an arc sine of more than 1: print it.",
-    ),
-    (
-        r"TypeError: only (?:size-1|length-1|0-dimensional) arrays",
+    r"TypeError: only (?:size-1|length-1|0-dimensional) arrays": (
         "An array came where one number is needed. `math` and `float()` take one at a time; numpy's "
-        "functions take arrays. In a call, look at the order of the arguments too.",
+        "functions take arrays. In a call, look at the order of the arguments too."
     ),
-    (
-        r"ValueError: The truth value of an array",
-        "Compare single numbers, or say `.any()` or `.all()` of them.",
+    r"ValueError: The truth value of an array": (
+        "Compare single numbers, or say `.any()` or `.all()` of them."
     ),
-    (
-        r"positional arguments? but \d+ (?:was|were) given",
-        "Keep the stub's arguments in the `def`, all of them.",
+    r"positional arguments? but \d+ (?:was|were) given": (
+        "Keep the stub's arguments in the `def`, all of them."
     ),
-    (r"missing \d+ required positional", "Pass every argument that the `def` names."),
-    (r"'bitwise_xor'|for \^", "`^` is no power in Python: write `**`."),
-    (
-        r"RecursionError",
-        "The function calls itself more often than Python allows. Does it stop? A loop has no such limit.",
+    r"missing \d+ required positional": "Pass every argument that the `def` names.",
+    r"'bitwise_xor'|for \^": "`^` is no power in Python: write `**`.",
+    r"RecursionError": (
+        "The function calls itself more often than Python allows. Does it stop? A loop has no such limit."
     ),
-    (
-        r"ValueError: (?:too many|not enough) values to unpack",
-        "The names on the left must be as many as the values.",
+    r"ValueError: (?:too many|not enough) values to unpack": (
+        "The names on the left must be as many as the values."
     ),
-)
+}
 
 
 def cure(failure: StudentFailure) -> str:
@@ -310,7 +291,7 @@ def cure(failure: StudentFailure) -> str:
     if found and hasattr(np.ndarray, found[2]):
         what = "list" if found[1] == "list" else "number"
         return f"Only arrays have `{found[2]}`; this is a {what}. Make an array first: `np.asarray(...)`."
-    for pattern, advice in _CURES:
+    for pattern, advice in _CURES.items():
         if found := re.search(pattern, said):
             return advice.format(*found.groups())
     return ""

@@ -107,6 +107,14 @@ def place_of(error: BaseException) -> tuple[str, int] | None:
     return None
 
 
+def opened_at(error: BaseException, otherwise: Path, line: int | None = None) -> tuple[Path, int | None]:
+    """The file and the line of the course that an author opens for an exception, else the given ones."""
+    if isinstance(error, SyntaxError) and error.filename:
+        return Path(error.filename), error.lineno
+    place = place_of(error)
+    return (content().root / place[0], place[1]) if place else (otherwise, line)
+
+
 def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:
     """A failure as words: what happened and what to do, without any value of the check's.
 

@@ -612,9 +612,8 @@ class Counted:
         try:
             value = call()
         except StudentFailure:
-            if self.refusal is not None:
-                raise self.refusal from None
-            raise
+            if self.refusal is None:
+                raise
         if self.refusal is not None:
             raise self.refusal
         return value

@@ -153,10 +153,14 @@ def _digest(catalog: Catalog, exercise: Exercise, mistakes: bytes) -> str:
 
 
 def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None) -> Table:
-    words = mistakes_of(catalog, exercise).words
+    made = Table(
+        made_from=digest(catalog, exercise),
+        words=mistakes_of(catalog, exercise).words,
+        within=getattr(questions, "WITHIN", {}),
+        answers=_plain(_expected(exercise)),
+    )
     if questions is None:
-        return Table(made_from=digest(catalog, exercise), words=words, answers=_plain(_expected(exercise)))
-    within: dict[str, float] = getattr(questions, "WITHIN", {})
+        return made
     tasks = sorted(tasks_asked(questions))
     for task in tasks:
         if task not in {task.id for task in exercise.task}:
@@ -167,13 +171,7 @@ def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None
         for function in _right(catalog, exercise, task):
             for name, sums in sums_of(questions, task, function).items():
                 right.setdefault(name, set()).add(sums)
-    made = Table(
-        made_from=digest(catalog, exercise),
-        words=words,
-        within=within,
-        right={name: tuple(sorted(sums)) for name, sums in right.items()},
-        answers=_plain(_expected(exercise)),
-    )
+    made.right.update({name: tuple(sorted(sums)) for name, sums in right.items()})
     rows: dict[str, dict[tuple[float, ...], dict[tuple[str, ...], Row]]] = {name: {} for name in right}
     says = {task: _says(questions, task, next(_right(catalog, exercise, task))) for task in tasks}
     for task, codes, function in hypotheses_of(catalog, exercise):

@@ -11,7 +11,6 @@ import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -257,10 +256,7 @@ def write_points(catalog: Catalog, exercise: Exercise) -> Path | None:
             # It was left out: the last line above the first task.
             last = next(i for i in range(lines.line(("task",)) - 2, 0, -1) if text[i].strip())
             text.insert(last + 1, line)
-    slow = [at for at, line in enumerate(text) if re.match(r"slow\s*=", line)]
-    for at in slow:  # measured, and kept in ``times.json``
-        del text[at]
-    if not stale and not slow:
+    if not stale:
         return None
     write_atomically(path, "\n".join(text).encode())
     return path
@@ -280,13 +276,8 @@ _LEAST = 0.4
 def audit_slow(
     catalog: Catalog, exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings
 ) -> None:
-    """Report times of checks that do not exist, and those that stand among what an author writes."""
+    """Report times of checks that do not exist."""
     again = f"Run `course author build {exercise.id}`."
-    path = exercise.checks_path.with_name("exercise.toml")
-    written = read_document(path, Exercise)
-    if written.value.slow:
-        problem = f"what was measured is kept in {catalog.times_path.name}."
-        findings.add(path, written.lines.line(("slow",)), "slow", problem, again)
     known = {check.id for check in checks if not check.hidden}
     for check in sorted(exercise.slow.keys() - known):
         findings.add(catalog.times_path, None, "slow", f"there is no public check {check}.", again)
@@ -400,8 +391,8 @@ def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings)
         fix = f'Add "{exercise.id}" to `exercises` in the head of {exercise.lesson}.md.'
         wrong(("lesson",), f"lesson {exercise.lesson} does not name this exercise.", fix)
     _audit_order(catalog, exercise, wrong)
-    for other in map(partial(_readable, catalog), (*catalog.exercise_ids(), *catalog.warm_up_ids())):
-        if other is None or other.id >= exercise.id:
+    for other in _readable(catalog, (*catalog.exercise_ids(), *catalog.warm_up_ids())):
+        if other.id >= exercise.id:
             continue
         for key, same, what in (
             ("order", other.kind == exercise.kind and _rank(other) == _rank(exercise), "place"),
@@ -445,23 +436,23 @@ def _audit_order(catalog: Catalog, exercise: Exercise, wrong: About) -> None:
     if stands(exercise) not in places:  # named already
         return
     later = places[places.index(stands(exercise)) + 1 :]
-    others = [other for other in map(partial(_readable, catalog), ids) if other is not None]
-    for other in sorted(others, key=lambda one: one.order):  # the lowest of them is where it belongs
-        if other.order >= exercise.order or stands(other) not in later:
-            continue
-        if exercise.is_warm_up and other.lesson != exercise.lesson:
-            continue
+    above = [
+        other
+        for other in _readable(catalog, ids)
+        if other.order < exercise.order and stands(other) in later
+        if other.lesson == exercise.lesson or not exercise.is_warm_up
+    ]
+    if above:
+        other = min(above, key=lambda one: one.order)  # where it belongs
         problem = f"{other.kind} {other.id} has a lower order, {other.order}, and its {what} comes later."
         fix = f"Give it the order {other.order}, and each {exercise.kind} from {other.id} on one more."
         wrong(("order",), problem, fix)
-        return
 
 
-def _readable(catalog: Catalog, exercise_id: str) -> Exercise | None:
-    try:
-        return catalog.exercise(exercise_id)
-    except ContentError:
-        return None  # reported where that exercise is audited
+def _readable(catalog: Catalog, ids: Iterable[str]) -> Iterator[Exercise]:
+    for exercise_id in ids:
+        with contextlib.suppress(ContentError):  # reported where that exercise is audited
+            yield catalog.exercise(exercise_id)
 
 
 def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:

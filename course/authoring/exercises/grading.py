@@ -6,7 +6,6 @@ import ast
 import contextlib
 import os
 import signal
-import tempfile
 import threading
 import traceback
 import types
@@ -20,7 +19,6 @@ import numpy as np
 
 from course.authoring.mistakes import Mistakes, Variant
 from course.catalog.load import Catalog
-from course.catalog.locate import content
 from course.catalog.models import Exercise
 from course.catalog.pack import pack_bytes
 from course.catalog.reading import read_text
@@ -32,10 +30,11 @@ from course.isolation.failures import StudentFailure
 from course.isolation.inside import loops
 from course.isolation.inside.worker import shares_memory
 from course.physics.systems import SYSTEMS
+from course.progress.workspace import write_atomically
 from course.scoring import kit
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.explain.fingerprint import reached_from
-from course.scoring.failures import place_of, reason_of
+from course.scoring.failures import opened_at, reason_of
 from course.scoring.judging.session import check_files
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.values import Inspected, as_march, overwritten
@@ -94,12 +93,8 @@ def blamed(path: Path, at: int | None = None) -> Iterator[None]:
     except CourseError:
         raise
     except Exception as error:
-        place = place_of(error)
-        file, line = (content().root / place[0], place[1]) if place else (path, at)
-        if isinstance(error, SyntaxError) and error.filename:
-            file, line = Path(error.filename), error.lineno
-        problem = f"it raises {reason_of(error)}."
-        raise ContentError(file, line, problem, help="Correct that line, or what it needs.") from error
+        problem, fix = f"it raises {reason_of(error)}.", "Correct that line, or what it needs."
+        raise ContentError(*opened_at(error, path, at), problem, help=fix) from error
 
 
 def accepted_sources(catalog: Catalog, exercise: Exercise) -> dict[str, bytes]:
@@ -404,9 +399,8 @@ class LocalSubmission:
         try:
             result = _guarded(loop)
         except StudentFailure:
-            if escaped:
-                raise escaped[0] from None
-            raise
+            if not escaped:
+                raise
         if escaped:
             raise escaped[0]
         return result
@@ -438,9 +432,8 @@ def ending(seconds: float, said: Callable[[], ContentError]) -> Iterator[None]:
     before = signal.signal(signal.SIGALRM, stop) if timed else None
     try:
         if timed:
-            signal.setitimer(
-                signal.ITIMER_REAL, seconds, 1.0
-            )  # again and again: a program may catch the first
+            # Again and again: a program may catch the first.
+            signal.setitimer(signal.ITIMER_REAL, seconds, 1.0)
         with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere):  # noqa: PTH123
             yield
     except _TooLongError:
@@ -477,7 +470,7 @@ def _given(value: Any, escaped: list[BaseException]) -> Any:
     if isinstance(value, np.random.Generator):  # crosses as a seed
         return np.random.default_rng(int(value.integers(2**62)))
     if isinstance(value, _SYSTEM_TYPES) or not callable(value):
-        return _plain(value) if not isinstance(value, _SYSTEM_TYPES) else value
+        return _plain(value)
 
     def callback(*args: Any, **kwargs: Any) -> Any:
         try:
@@ -506,9 +499,7 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if isinstance(value, dict):
         return {str(key): _plain(item) for key, item in value.items()}
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    if callable(value):
+    if value is None or isinstance(value, bool | int | float | str) or callable(value):
         return value
     raise StudentFailure("protocol", message=f"a value of type {type(value).__name__}")
 
@@ -535,7 +526,10 @@ def write_pack(catalog: Catalog, exercise_ids: Sequence[str], output: Path) -> d
         )
     solutions = {exercise_id: _files(catalog, exercise_id) for exercise_id in exercise_ids}
     data = pack_bytes(catalog.course_id, catalog.version, solutions)
-    _write_whole(output, data)
+    if not os.access(output.parent, os.W_OK):
+        problem = f"{output} cannot be written: {output.parent} is no folder that you can write to."
+        raise UsageError(problem, help="Name a file in a folder you can write to.")
+    write_atomically(output, data)
     return {exercise_id: tuple(sorted(files)) for exercise_id, files in solutions.items()}
 
 
@@ -545,21 +539,3 @@ def _files(catalog: Catalog, exercise_id: str) -> dict[str, bytes]:
     if not paths[0].is_file():
         raise ContentError(paths[0], None, "the model solution is missing.", help="Write it first.")
     return {path.name: path.read_bytes() for path in paths if path.is_file()}
-
-
-def _write_whole(output: Path, data: bytes) -> None:
-    """Write beside the target, then move into place: a half-written pack must never look like one."""
-    try:
-        handle, name = tempfile.mkstemp(dir=output.parent, prefix=f".{output.name}.")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            Path(name).chmod(0o644)
-            Path(name).replace(output)
-        finally:
-            with contextlib.suppress(OSError):
-                Path(name).unlink()
-    except OSError as error:
-        raise UsageError(
-            f"{output} cannot be written: {error.strerror}.", help="Name a file in a folder you can write to."
-        ) from None

@@ -86,18 +86,15 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
     for path in accepted:
         with findings.refusals():
             proofs.append(Proof("accepted", path, compose(solution, path), path.name))
-    for variant in mistakes.right:
+    for variant in (*mistakes.right, *mistakes.wrong):
+        role, mutant = ("mutant", variant) if variant.code else ("accepted", None)
         with findings.refusals():
             source = source_of(catalog, exercise, variant)
-            proofs.append(Proof("accepted", file, source, variant.name, line=variant.line))
+            proofs.append(Proof(role, file, source, variant.name, mutant, variant.line))
     if not mistakes.wrong:
         message = "it has no wrong program, so nothing shows that the checks catch anything."
         findings.add(file, None, "mutants", message, "Add the mistakes that students make.")
         return tuple(proofs)
-    for variant in mistakes.wrong:
-        with findings.refusals():
-            source = source_of(catalog, exercise, variant)
-            proofs.append(Proof("mutant", file, source, variant.name, variant, variant.line))
     _audit_mutants(exercise, mistakes, file, findings)
     if len(mistakes.wrong) < least_mutants:
         count = len(mistakes.wrong)
@@ -125,7 +122,11 @@ def _audit_mutants(exercise: Exercise, mistakes: Mistakes, file: Path, findings:
 
 
 class Prover:
-    """Reports every proof of one exercise that its grading does not confirm."""
+    """Reports every proof of one exercise that its grading does not confirm.
+
+    Attributes:
+        checks: by id.
+    """
 
     def __init__(
         self,
@@ -135,7 +136,7 @@ class Prover:
         findings: Findings,
     ) -> None:
         self.exercise = exercise
-        self._checks = {check.id: check for check in checks}
+        self.checks = {check.id: check for check in checks}
         self._caught = caught
         self._findings = findings
         #: A check raised or cannot be imported: what grading says of the programs follows from that.
@@ -274,7 +275,7 @@ class Prover:
                 fix = "Correct the code, or the check if the code is right."
                 self._findings.add(proof.path, line, proof.role, problem, fix)
         ran = {check.id for check in verdict.checks}
-        for check_id in sorted(ran ^ set(self._checks)):
+        for check_id in sorted(ran ^ set(self.checks)):
             odd = (
                 "ran, but no plain function declares it"
                 if check_id in ran
@@ -297,7 +298,7 @@ class Prover:
                     self._findings.add(*place, "leak", problem, IN_WORDS)
 
     def _place(self, check_id: str, otherwise: Path) -> tuple[Path, int | None]:
-        check = self._checks.get(check_id)
+        check = self.checks.get(check_id)
         return (check.path, check.line) if check else (otherwise, None)
 
     @staticmethod

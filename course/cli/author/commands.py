@@ -2,7 +2,7 @@
 
 import hashlib
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -229,7 +229,7 @@ def new_exercise(
     everywhere, and leaves blank only what you alone can know. Nothing is overwritten. `course author check
     ID` names each blank that is left.
     """
-    return _new_with_functions(scaffold.new_exercise, "exercise", name, function, title, summary, lesson)
+    return _new_with_functions("exercise", name, function, title, summary, lesson)
 
 
 @_new.command("warmup", epilog="Example: course author new warmup swing --lesson engines")
@@ -245,17 +245,11 @@ def new_warm_up(
     Like `course author new exercise`, but smaller: six files, and all checks are public. Once the blanks are
     filled, `course author build ID` computes what the wrong programs answer.
     """
-    return _new_with_functions(scaffold.new_warm_up, "warm-up", name, function, title, summary, lesson)
+    return _new_with_functions("warm-up", name, function, title, summary, lesson)
 
 
 def _new_with_functions(
-    write: Callable[..., tuple[Path, ...]],
-    kind: str,
-    name: str,
-    function: list[str] | None,
-    title: str,
-    summary: str,
-    lesson: str,
+    kind: str, name: str, function: list[str] | None, title: str, summary: str, lesson: str
 ) -> int:
     console, catalog = current(), load_catalog()
     asked = [scaffold.Function.parse(text) for text in function or ()]
@@ -263,7 +257,9 @@ def _new_with_functions(
         title = title or console.ask("Title: ") or ""
         summary = summary or console.ask("What it is about, in one line: ") or ""
         asked = list(_ask_functions(console))
-    written = write(catalog, name, asked, title=title, summary=summary, lesson=lesson)
+    written = scaffold.new_exercise(
+        catalog, name, asked, title=title, summary=summary, lesson=lesson, warm_up=kind == "warm-up"
+    )
     return _report_new(catalog, kind, name, written)
 
 

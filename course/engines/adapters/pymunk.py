@@ -20,7 +20,7 @@ class EngineWorld:
             raise NotApplicableError("The engine knows two dimensions only.")
         self._dt = scene.dt
         self.space = space = pymunk.Space()
-        space.gravity = (scene.gravity[0], scene.gravity[2])
+        space.gravity = scene.gravity[::2]  # x and z
         space.iterations = options.get("iterations", space.iterations)
         space.collision_slop = options.get("collision_slop", space.collision_slop)
         # The product of two equal coefficients must be the one that acts.
@@ -33,16 +33,13 @@ class EngineWorld:
             self._wall(wall)
         for index, pivot in enumerate(scene.pivots):
             parent = self.bodies[index - 1] if index else space.static_body
-            joint = pymunk.PivotJoint(parent, self.bodies[index], (pivot[0], pivot[2]))
+            joint = pymunk.PivotJoint(parent, self.bodies[index], pivot[::2])
             joint.error_bias = options.get("error_bias", joint.error_bias)
             space.add(joint)
 
     def _add(self, body: Body) -> pymunk.Body:
         made = pymunk.Body(body.mass, body.inertia)
-        made.position, made.velocity = (
-            (body.position[0], body.position[2]),
-            (body.velocity[0], body.velocity[2]),
-        )
+        made.position, made.velocity = body.position[::2], body.velocity[::2]
         edge = 2.0 * body.size
         shape = (
             pymunk.Circle(made, body.size)

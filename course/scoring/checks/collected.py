@@ -33,7 +33,7 @@ import pytest
 from course.catalog.locate import content
 from course.errors import ContentError
 from course.scoring.explain.story import Words, read_table, table_path, words_in
-from course.scoring.failures import place_of, reason_of
+from course.scoring.failures import opened_at, reason_of
 from course.scoring.remote import RemoteSubmission
 from course.scoring.verdict import Visibility
 
@@ -133,18 +133,8 @@ def not_importable(error: BaseException, file: Path) -> ContentError:
         error = error.__cause__
     if isinstance(error, ContentError):
         return error
-    line: int | None = None
-    if isinstance(error, SyntaxError) and error.filename:
-        file, line = Path(error.filename), error.lineno
-    else:
-        place = place_of(error)
-        if place is not None:
-            name, line = place
-            file = content().root / name
-    return ContentError(file, line, f"it cannot be imported ({reason_of(error)}).", help=_CORRECT)
-
-
-_CORRECT = "Correct that line, or what it needs."
+    problem = f"it cannot be imported ({reason_of(error)})."
+    return ContentError(*opened_at(error, file), problem, help="Correct that line, or what it needs.")
 
 
 @functools.cache

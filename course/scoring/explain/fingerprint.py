@@ -194,9 +194,7 @@ def _keeps(node: ast.stmt, inside: list[ast.AST], handed_on: set[str]) -> bool:
     if isinstance(node, ast.Import | ast.ImportFrom):
         return False
     if isinstance(node, ast.Assign | ast.AnnAssign):
-        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-        bound = {part.id for target in targets for part in ast.walk(target) if isinstance(part, ast.Name)}
-        return node.value is not None and not _is_fixed(node.value) and bool(bound & handed_on)
+        return node.value is not None and not _is_fixed(node.value) and bool(_assigned(node) & handed_on)
     if not isinstance(node, ast.FunctionDef) or node.decorator_list:
         return True
     defaults = [*node.args.defaults, *(default for default in node.args.kw_defaults if default)]
@@ -256,12 +254,16 @@ def _read(source: bytes) -> tuple[dict[str, ast.stmt], dict[ast.stmt, list[ast.A
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             defined[node.name] = node
         elif isinstance(node, ast.Assign | ast.AnnAssign):
-            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-            parts = (part for target in targets for part in ast.walk(target))
-            defined |= {part.id: node for part in parts if isinstance(part, ast.Name)}
+            defined |= dict.fromkeys(_assigned(node), node)
         elif isinstance(node, ast.Import | ast.ImportFrom):
             defined |= {(alias.asname or alias.name).partition(".")[0]: node for alias in node.names}
     return defined, {node: list(ast.walk(node)) for node in dict.fromkeys(defined.values())}
+
+
+def _assigned(node: ast.Assign | ast.AnnAssign) -> set[str]:
+    """The names in what a statement assigns to."""
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+    return {part.id for target in targets for part in ast.walk(target) if isinstance(part, ast.Name)}
 
 
 def _reached(name: str, defined: dict[str, ast.stmt], uses: dict[ast.stmt, set[str]]) -> set[str]:

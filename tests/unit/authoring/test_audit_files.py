@@ -61,7 +61,7 @@ OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
         (TOML, "points = 4", "points = 7", "points = 7", "points", "come to 4, and 7 is"),
         (TOML, "hidden_checks = 2", "hidden_checks = 3", "_checks", "points", "come to 2, and 3 is"),
         (TOML, "hidden_points = 5", "hidden_points = 4", "_points", "points", "come to 5, and 4 is"),
-        (TOML, "order = 1", "order = 1\nslow = { no = 0.2 }", "slow = {", "slow", "kept in times.json"),
+        (TOML, "order = 1", "order = 1\nslow = { no = 0.2 }", "slow = {", "content", "unknown key `slow`"),
         (TOML, "order = 1", "order = 2", None, "exercise", "order 2 too"),
         (TOML, "order = 1", "order = 3", None, "exercise", "lower order, 2, and its lesson comes later"),
         (SYLLABUS, '"half-as-much"', '"half-as-much",\n"thirds"', "thirds", "syllabus", "thirds has no file"),

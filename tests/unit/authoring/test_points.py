@@ -76,13 +76,6 @@ def test_times_are_measured_once_and_again_when_a_check_changes(mini, monkeypatc
     assert build(9.0) is None
 
 
-def test_a_time_in_exercise_toml_moves_where_it_is_kept(mini):
-    path = mini / TOML
-    right = path.read_text()
-    path.write_text(right.replace("order = 1", "order = 1\nslow = { double_of_three = 0.2 }"))
-    assert built(mini) == right
-
-
 def test_times_that_cannot_be_read_name_their_file_and_the_fix(mini):
     (mini / "exercises" / "times.json").write_text("{")
     with pytest.raises(ContentError, match=r"times\.json: what was measured cannot be read") as caught:

@@ -8,7 +8,7 @@ import pytest
 
 from course.authoring.audit import audit
 from course.authoring.exercises.diagnosis import build
-from course.authoring.scaffold import Function, new_warm_up
+from course.authoring.scaffold import Function, new_exercise
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.errors import ContentError, UsageError
@@ -30,7 +30,7 @@ WRONG = {"DOUBLES": "2 * x", "ADDS_THREE": "3 + x", "CUBES": "x**3"}
 @pytest.fixture
 def tripling(mini):
     """A warm-up of the mini course with every blank filled, as an author would."""
-    new_warm_up(Catalog(), "tripling", [Function.parse("triple(x)")], lesson="half-as-much")
+    new_exercise(Catalog(), "tripling", [Function.parse("triple(x)")], lesson="half-as-much", warm_up=True)
     student, solutions = mini / "exercises/warm-ups/tripling", mini / "solutions/warm-ups/tripling"
     for name, words in WORDS.items():
         fill(student / name, words)
@@ -220,4 +220,4 @@ def test_a_warm_up_lies_with_the_warm_ups(tripling):
 
 def test_no_exercise_and_warm_up_share_an_id(mini):
     with pytest.raises(UsageError):
-        new_warm_up(Catalog(), "halving", lesson="half-as-much")
+        new_exercise(Catalog(), "halving", lesson="half-as-much", warm_up=True)

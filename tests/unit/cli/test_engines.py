@@ -81,7 +81,7 @@ def test_the_rows_of_a_scenario_say_the_best_in_words(bare, monkeypatch):
         def __exit__(self, *_):
             return None
 
-        def ask(self, job, seconds):
+        def ask(self, job, seconds=0):
             if self.engine == "dart":
                 return {"status": "crash", "message": "It was ended by SIGABRT."}
             value = replies.get(self.engine, 5.0)

@@ -26,7 +26,7 @@ class Stand:
     def __exit__(self, *_):
         return None
 
-    def ask(self, job, seconds):
+    def ask(self, job, seconds=0):
         Stand.asked.append((self.engine, job["do"], job.get("scenario"), job.get("setting"), job.get("dt")))
         special = Stand.replies.get((self.engine, job["do"], job.get("scenario"))) or Stand.replies.get(
             (self.engine, job["do"], None)

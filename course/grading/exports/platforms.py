@@ -299,7 +299,7 @@ def _same(theirs: str, ours: str) -> bool:
 
 
 def _read(path: Path) -> tuple[list[str], list[list[str]]]:
-    """The headings and the rows. A spreadsheet may have saved it with semicolons; Moodle takes commas alone."""
+    """The headings and the rows. A spreadsheet may have parted them with semicolons; Moodle takes commas."""
     rows: list[list[str]] = []
     text = read_text(path, _wrong)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter_of(text), strict=True)

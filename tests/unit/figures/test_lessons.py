@@ -10,8 +10,6 @@ from course.figures import contact, engines, integrators, robots, sim_to_real
 from course.figures.robots import FALLEN, STANDING
 from course.figures.style import METHODS, house_style
 from course.physics.dynamics import TwoLinkArm
-from course.physics.invariants import convergence_order
-from course.physics.rotation import kinetic_energy
 from course.simulations.experiments.dynamics import from_hanging, swing
 
 
@@ -29,15 +27,6 @@ def test_explicit_euler_grows_at_every_step():
     assert integrators._growth("explicit_euler", 0.01) > 1.0 + 1e-5
 
 
-@pytest.mark.parametrize(
-    ("method", "order"),
-    [("explicit_euler", 1), ("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)],
-)
-def test_errors_drawn_have_the_slopes_written_beside_them(method, order):
-    hs, errors = integrators._errors_at_end(method, np.array([640, 1280, 2560]))
-    assert convergence_order(hs, errors) == pytest.approx(order, abs=0.05)
-
-
 def test_every_curve_of_the_energy_figure_rises_and_runge_kutta_crosses_verlet_where_marked():
     (axes,) = integrators.energy_error().axes
     curves = {line.get_color(): line for line in axes.lines if len(line.get_xdata()) > 1}
@@ -53,26 +42,6 @@ def test_a_robot_without_delay_stands_only_where_its_reaction_outweighs_gravity(
     weight = 50.0 * 9.81 * 0.9  # N m per radian of lean
     kp, kd = np.array([0.5 * weight, 2.0 * weight]), np.array([100.0, 300.0])
     assert robots.fate(kp, kd, 0.0).tolist() == [FALLEN, STANDING]
-
-
-def test_a_free_body_turns_over_four_times_and_only_explicit_euler_gains_energy():
-    def gain(method):
-        _, spins, _ = contact.free_spin(method)
-        ends = kinetic_energy(contact.INERTIA, spins[[0, -1]])
-        return float(ends[1] / ends[0] - 1)
-
-    _, spins, lengths = contact.free_spin("split")
-    assert np.count_nonzero(np.diff(np.sign(spins[:, 1]))) == 4
-    assert lengths == pytest.approx(1.0, abs=1e-12)
-    assert gain("explicit_euler") == pytest.approx(0.278, abs=5e-4)
-    assert abs(gain("rk4")) < 1e-8
-    assert abs(gain("split")) < 1e-8
-
-
-@pytest.mark.parametrize(("restitution", "end"), [(1.0, -6.0), (0.5, -3.25), (0.0, -0.5)])
-def test_the_pair_passes_or_parts_as_its_restitution_says(restitution, end):
-    _, x = contact.head_on(restitution)
-    assert x[-1].tolist() == pytest.approx([end, -end], abs=1e-9)
 
 
 def test_a_wall_is_missed_from_the_speed_on_at_which_a_step_spans_wall_and_ball():

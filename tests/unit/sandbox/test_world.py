@@ -1,14 +1,11 @@
 """One world: fixed steps, hands that act, books that balance."""
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import math
 import random
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -20,9 +17,6 @@ from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.scene.model import Body, Material, Repeat, Scene
 from course.sandbox.world.engine import Ledger
 from course.sandbox.world.world import MAX_BODIES, World
-
-if TYPE_CHECKING:
-    pass
 
 
 def scene(*bodies, gravity=(0.0, 0.0), **more):
@@ -452,13 +446,6 @@ def test_what_is_no_number_or_out_of_range_is_refused_and_changes_nothing(act):
     with pytest.raises(UsageError):
         act(world)
     assert (world.state_hash(), world.settings) == before
-
-
-def test_restitution_and_friction_of_a_pair_are_products():
-    world = World(scene(puck("a", -1, 1), puck("b", 1, -1), e=1.0), {"restitution": 0.8})
-    world.step(400)
-    event = next(event for event in world.drain_events() if event.kind == "contact")
-    assert event.leave == pytest.approx(0.64 * event.approach)
 
 
 def test_the_order_of_adding_bodies_changes_a_chaotic_outcome_and_not_a_simple_one():

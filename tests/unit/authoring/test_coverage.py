@@ -1,7 +1,6 @@
 """The table of where the course has what: it finds what is missing, and the page says what the table says."""
 
 import json
-from pathlib import Path
 
 import pytest
 
@@ -75,7 +74,7 @@ def test_a_table_whose_places_all_exist_is_right(table):
         ('["5"', '["5, 7"', "line 7 belongs to 'the title' already"),
     ],
 )
-def test_what_is_wrong_is_said_with_its_line(table: Path, old: str, new: str, said: str) -> None:
+def test_what_is_wrong_is_said_with_its_line(table, old, new, said):
     found = problems(table, old, new)
     assert any(said in problem.message for problem in found)
     text = table.read_text(encoding="utf-8").splitlines()

@@ -10,6 +10,7 @@ from course.figures import contact, engines, integrators, robots, sim_to_real
 from course.figures.robots import FALLEN, STANDING
 from course.figures.style import METHODS, house_style
 from course.physics.dynamics import TwoLinkArm
+from course.physics.rotation import kinetic_energy
 from course.simulations.experiments.dynamics import from_hanging, swing
 
 
@@ -42,6 +43,26 @@ def test_a_robot_without_delay_stands_only_where_its_reaction_outweighs_gravity(
     weight = 50.0 * 9.81 * 0.9  # N m per radian of lean
     kp, kd = np.array([0.5 * weight, 2.0 * weight]), np.array([100.0, 300.0])
     assert robots.fate(kp, kd, 0.0).tolist() == [FALLEN, STANDING]
+
+
+def test_a_free_body_turns_over_four_times_and_only_explicit_euler_gains_energy():
+    def gain(method):
+        _, spins, _ = contact.free_spin(method)
+        ends = kinetic_energy(contact.INERTIA, spins[[0, -1]])
+        return float(ends[1] / ends[0] - 1)
+
+    _, spins, lengths = contact.free_spin("split")
+    assert np.count_nonzero(np.diff(np.sign(spins[:, 1]))) == 4
+    assert lengths == pytest.approx(1.0, abs=1e-12)
+    assert gain("explicit_euler") == pytest.approx(0.278, abs=5e-4)
+    assert abs(gain("rk4")) < 1e-8
+    assert abs(gain("split")) < 1e-8
+
+
+@pytest.mark.parametrize(("restitution", "end"), [(1.0, -6.0), (0.5, -3.25), (0.0, -0.5)])
+def test_the_pair_passes_or_parts_as_its_restitution_says(restitution, end):
+    _, x = contact.head_on(restitution)
+    assert x[-1].tolist() == pytest.approx([end, -end], abs=1e-9)
 
 
 def test_a_wall_is_missed_from_the_speed_on_at_which_a_step_spans_wall_and_ball():

@@ -16,6 +16,7 @@ from course.sandbox.runs.recording import Film, Recording, read, replay
 from course.sandbox.scene.loading import choose
 from course.sandbox.views.stage import Stage
 from course.sandbox.world.world import World
+from tests.unit.sandbox.hands import meddle
 
 NAMES = ["box-stack", "billiards-break", "robot-boxes", "restitution-row", "newtons-cradle", "head-on"]
 
@@ -27,27 +28,9 @@ def random_run(seed, turns=12):
     world = World(chosen.scene, chosen.settings)
     recording = Recording(world, every=25)
     for _ in range(turns):
-        x, y = chance.uniform(-1.5, 1.5), chance.uniform(-1, 1.5)
-        move = chance.choice(
-            ["grab", "grab", "drag", "drag", "release", "throw", "spawn", "set", "reset", "look"]
-        )
-        if move == "grab":
-            world.grab(x, y, 1.0)
-        elif move == "drag":
-            world.drag(x, y)
-            world.drag(x + 0.1, y)
-        elif move == "release":
-            world.release()
-        elif move == "throw":
-            world.throw(x, y, chance.uniform(-5, 5), chance.uniform(-5, 5), 1.0)
-        elif move == "spawn":
-            world.spawn(chance.choice(["circle", "box"]), x, y, chance.uniform(-2, 2))
-        elif move == "set":
-            world.set(chance.choice(["gravity", "restitution", "friction"]), chance.random())
-        elif move == "reset":
-            world.reset()
-        else:
-            world.drain_events()
+        meddle(world, chance)
+        if chance.random() < 0.2:
+            chance.choice([world.reset, world.drain_events])()
         if chance.random() < 0.5:
             world.step(chance.randrange(20))
         else:
@@ -118,7 +101,8 @@ def test_a_recording_cut_off_damaged_or_foreign_is_refused_with_what_to_do(tmp_p
         ([head, *lines], IntegrityError, "has no end; it was cut off"),
         ([head, b"{\n", *lines, end], IntegrityError, "run.jsonl:2 is damaged"),
         ([head, end, lines[0], end], IntegrityError, "its steps are out of order"),
-        ([head, DONE % (0, b'"__init__"'), b"\n", end], IntegrityError, "what no recording holds"),
+        ([head, *lines, end, end], IntegrityError, "its steps are out of order"),
+        ([head, DONE % (0, b'"__init__"'), b"\n", *lines, end], IntegrityError, "what no recording holds"),
         ([head, *lines, days_later], IntegrityError, "what no recording holds"),
     ):
         path.write_bytes(b"".join(data))

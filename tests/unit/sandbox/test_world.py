@@ -1,6 +1,5 @@
 """One world: fixed steps, hands that act, books that balance."""
 
-import contextlib
 import gc
 import math
 import random
@@ -17,6 +16,7 @@ from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.scene.model import Body, Material, Repeat, Scene
 from course.sandbox.world.engine import Ledger
 from course.sandbox.world.world import MAX_BODIES, World
+from tests.unit.sandbox.hands import meddle
 
 
 def scene(*bodies, gravity=(0.0, 0.0), **more):
@@ -150,45 +150,10 @@ def session(name, seed):
     """
     chance = random.Random(f"{name} {seed}")
     world = World(choose(name).scene)
-    left, bottom, right, top = world.scene.view
-    most, size = 0.0, world.settings["step"]
+    most = 0.0
     world.step(chance.randrange(200))
     for _ in range(12):
-        moving = [part.name for part in world.parts if not part.fixed]
-        if not moving:
-            break
-        body = chance.choice(moving)
-        x, y = world.state()[world._space.index[body], :2]
-        move = chance.randrange(9)
-        if move == 0:
-            world.grab(x, y, 0.05)
-        elif move == 1:
-            world.drag(chance.uniform(left, right), chance.uniform(bottom, top))
-        elif move == 2:
-            world.release()
-        elif move == 3:
-            world.throw(x, y, chance.uniform(-3, 3), chance.uniform(-3, 3), 0.01)
-        elif move == 4:
-            key = chance.choice(["gravity", "restitution", "friction", "step", "iterations", "walls", "left"])
-            low, high = {"gravity": (0, 20), "step": (0.3 * size, 2 * size), "iterations": (1, 50)}.get(
-                key, (0, 1)
-            )
-            whole = key in {"walls", "iterations"}
-            with contextlib.suppress(UsageError):  # without wheels, there is no left one
-                world.set(key, chance.randint(low, high) if whole else chance.uniform(low, high))
-        elif move == 5:
-            with contextlib.suppress(UsageError):
-                world.place(body, chance.uniform(left, right), chance.uniform(bottom, top))
-        elif move == 6:
-            world.change(body, chance.choice(["vx", "vy", "spin", "mass"]), chance.uniform(0.5, 3))
-        elif move == 7:
-            with contextlib.suppress(UsageError):
-                world.copy(body)
-        else:
-            act, given = chance.choice(
-                [(world.stop, ()), (world.spawn, ("box", 0, 0)), (world.remove, (body,))]
-            )
-            act(*given)
+        meddle(world, chance)
         for _ in range(chance.randrange(10)):  # no step at all between two moves is a pause
             world.step(8)
             most = max(most, world.receipt.kinetic)

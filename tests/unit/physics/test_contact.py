@@ -55,42 +55,34 @@ RADIUS = 0.5
 
 @dataclass
 class Blow:
-    """Two balls before and after a blow, and what they exchanged."""
+    """Two balls, a row each, before or after a blow, and what they exchanged."""
 
-    velocity: tuple[np.ndarray, np.ndarray]
-    spin: tuple[np.ndarray, np.ndarray]  # rad/s, world axes
-    push: float
-    rub: np.ndarray
-    masses: tuple[float, float]
+    masses: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray  # rad/s, world axes
+    push: float = 0.0
+    rub: np.ndarray | float = 0.0
 
     def momentum(self):
-        return self.masses[0] * self.velocity[0] + self.masses[1] * self.velocity[1]
+        return self.masses @ self.velocity
 
     def energy(self):
-        sides = zip(self.masses, self.velocity, self.spin, strict=True)
-        return sum(0.5 * m * (v @ v + 0.4 * RADIUS**2 * (w @ w)) for m, v, w in sides)
+        turning = 0.4 * RADIUS**2 * np.sum(self.spin**2, axis=1)
+        return 0.5 * self.masses @ (np.sum(self.velocity**2, axis=1) + turning)
 
 
 def strike(normal, v, m, e, mu, spins):
     """The second ball lies in the direction of the normal; both of radius 0.5 m, and not turning."""
-    velocity = np.array(v, dtype=float)
-    give = 1.0 / np.array(m)
-    motion = Motion(velocity.copy(), np.zeros((2, 3)), give, 2.5 * give * spins)
-    normals, still = normal[None, :], np.zeros(3)
+    before = Blow(np.array(m), np.array(v, dtype=float), np.zeros((2, 3)))
+    give = 1.0 / before.masses
+    motion = Motion(before.velocity.copy(), np.zeros((2, 3)), give, 2.5 * give * spins)
+    normals = normal[None, :]
     closing = -normal_speed([(0, 1)], normals, motion.velocity)
     impulses = Impulses(np.zeros(1), np.zeros((1, 3)))
     if closing[0] > 0:
         solve([(0, 1)], normals, motion, impulses, np.array([True]), e * closing, mu)
-    rims = motion.rim / RADIUS
-    before = Blow((velocity[0], velocity[1]), (still, still), 0.0, still, m)
-    after = Blow(
-        (motion.velocity[0], motion.velocity[1]),
-        (rims[0], rims[1]),
-        float(impulses.push[0]),
-        impulses.rub[0],
-        m,
-    )
-    return before, after
+    spin = motion.rim / RADIUS
+    return before, Blow(before.masses, motion.velocity, spin, impulses.push[0], impulses.rub[0])
 
 
 @given(vectors, vectors, vectors, masses, masses, st.floats(0, 1), st.floats(0, 2), st.booleans())

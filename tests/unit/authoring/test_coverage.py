@@ -10,6 +10,7 @@ from course.catalog.locate import content
 from course.cli.author.commands import is_command
 from course.cli.frame.app import run
 from course.errors import ContentError, NotFoundError
+from tests.unit.authoring.conftest import edit
 
 TABLE = """\
 format_version = 1
@@ -40,9 +41,7 @@ def table(mini):
 
 def problems(path, old="", new=""):
     """What is wrong with the table after a change of it."""
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    edit(path, old, new)
     catalog = Catalog(content())
     return check_coverage(read_coverage(catalog), catalog, is_command)
 

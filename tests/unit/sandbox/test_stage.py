@@ -250,6 +250,14 @@ def test_no_run_ends_and_the_comparison_is_made_on_the_way():
     assert len(kept) == 1, "the same run is not kept twice"
 
 
+def test_a_run_is_compared_exactly_where_it_was_told_to():
+    stage = make("head-on", clock=lambda: 0.0)
+    while stage.experiment.stage != "done":
+        before = stage.world.steps
+        stage.tick(0.07)
+    assert before < stage.world.steps == 480
+
+
 @pytest.mark.parametrize("name", ["free-fall", "head-on", "incline", "restitution-row", "box-stack"])
 def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name):
     stage = make(name, settings={"step": 0.0037})  # no number of steps ends with a picture

@@ -29,6 +29,8 @@ def random_run(seed, turns=12):
     recording = Recording(world, every=25)
     for _ in range(turns):
         meddle(world, chance)
+        for x in (0.0, 0.1):  # of two places before one step only the last is felt
+            world.drag(x, 0.5)
         if chance.random() < 0.2:
             chance.choice([world.reset, world.drain_events])()
         if chance.random() < 0.5:

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from course.authoring.audit import audit
+from course.authoring.exercises.files import declared
 from course.authoring.exercises.grading import accepted_files, mistakes_of, solution_path, source_of
 from course.authoring.exercises.proofs import caught_by
-from course.authoring.exercises.source import CheckSource, checks_in, parse
+from course.authoring.exercises.source import CheckSource
 from course.authoring.report import AuditReport, AuthorProblem
 from course.catalog.load import Catalog
 from course.catalog.locate import content
@@ -68,7 +69,7 @@ class Oracle:
         catalog = Catalog()
         exercises = {exercise.id: exercise for exercise, _ in sources}
         names = {id_: self._names(exercise, catalog) for id_, exercise in exercises.items()}
-        checks = {id_: _checks(exercise, catalog) for id_, exercise in exercises.items()}
+        checks = {id_: declared(catalog, exercise) for id_, exercise in exercises.items()}
         for index, (exercise, source) in enumerate(sources):
             own = names[exercise.id].items()
             name = next((name for text, name in own if source.decode().endswith(text)), "?")
@@ -85,13 +86,6 @@ class Oracle:
         names[solution_path(catalog, exercise).read_text("utf-8")] = "solution"
         names[exercise.stub_path.read_text(encoding="utf-8")] = "stub"
         return names
-
-
-def _checks(exercise: Exercise, catalog: Catalog) -> tuple[CheckSource, ...]:
-    return (
-        *checks_in(exercise.checks_path, parse(exercise.checks_path), hidden=False),
-        *checks_in(path := catalog.content.graders / exercise.id / "checks.py", parse(path), hidden=True),
-    )
 
 
 def _verdict(exercise: Exercise, catalog: Catalog, checks: tuple[CheckSource, ...], name: str) -> Verdict:

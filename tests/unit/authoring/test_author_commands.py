@@ -257,16 +257,3 @@ def test_a_student_is_told_that_it_needs_a_checkout(mini, capsys, folder):
         got, body = answer(capsys, "author", *line)
         assert (got, body["error"]["code"]) == (4, "needs_checkout"), line
         assert "checkout" in body["error"]["help"]
-
-
-def test_every_author_command_has_a_help_page_with_an_example(capsys):
-    for line in (
-        ["check"],
-        ["mutants"],
-        ["pack"],
-        ["new", "exercise"],
-        ["new", "lesson"],
-        ["new", "question"],
-    ):
-        assert run(["author", *line, "--help", "--plain"]) == 0
-        assert "Example: course author" in capsys.readouterr().out

@@ -1,7 +1,6 @@
 """The table of where the course has what: it finds what is missing, and the page says what the table says."""
 
 import json
-from pathlib import Path
 
 import pytest
 
@@ -11,6 +10,7 @@ from course.catalog.locate import content
 from course.cli.author.commands import is_command
 from course.cli.frame.app import run
 from course.errors import ContentError, NotFoundError
+from tests.unit.authoring.conftest import edit
 
 TABLE = """\
 format_version = 1
@@ -41,9 +41,7 @@ def table(mini):
 
 def problems(path, old="", new=""):
     """What is wrong with the table after a change of it."""
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    edit(path, old, new)
     catalog = Catalog(content())
     return check_coverage(read_coverage(catalog), catalog, is_command)
 
@@ -75,7 +73,7 @@ def test_a_table_whose_places_all_exist_is_right(table):
         ('["5"', '["5, 7"', "line 7 belongs to 'the title' already"),
     ],
 )
-def test_what_is_wrong_is_said_with_its_line(table: Path, old: str, new: str, said: str) -> None:
+def test_what_is_wrong_is_said_with_its_line(table, old, new, said):
     found = problems(table, old, new)
     assert any(said in problem.message for problem in found)
     text = table.read_text(encoding="utf-8").splitlines()

@@ -101,7 +101,10 @@ def test_a_value_is_written_in_the_form_its_author_chose(value, text, written):
 
 # -- rules ------------------------------------------------------------------------------------------------
 
-GOOD = """
+ANSWER = "> **Answer.** That."
+SOURCE = "- A. Author, 123 pages, 2003 ([paper](https://example.org))."
+ANSWERED_TOO_EARLY = "> **Predict.** What?\n\n> **Answer.** A.\n\n## Two"
+GOOD = f"""
 > **Myth.** A.
 
 > **Fact.** B.
@@ -123,7 +126,7 @@ x = 29.5
 ![Two lines that cross at one](figure:lines)
 They cross at [1](=1), 12 times in 2005, with 29.5 of [these](exercise:one).
 
-> **Answer.** That.
+{ANSWER}
 
 ## Try it
 
@@ -137,7 +140,7 @@ Read [on](lesson:two#here).
 
 ## Sources
 
-- A. Author, 123 pages, 2003 ([paper](https://example.org)).
+{SOURCE}
 """
 
 
@@ -158,23 +161,11 @@ def test_a_lesson_with_everything_has_no_findings():
         ("## Worked example: one", "## One", "no section begins 'worked example'"),
         ("## Before you start", "## Start", "no section begins 'before you start'"),
         ("```console\n$ course lessons\n```", "x", "the lesson has no command to try"),
-        (
-            "- A. Author, 123 pages, 2003 ([paper](https://example.org)).",
-            "x",
-            "the lesson has no list of sources",
-        ),
+        (SOURCE, "x", "the lesson has no list of sources"),
         ("x = 29.5", "x = 29", "29.5 is produced by no code"),
-        (
-            "> **Predict.** What?",
-            "> **Predict.** What?\n\n> **Answer.** A.\n\n## Two",
-            "a figure without a prediction",
-        ),
-        ("> **Answer.** That.", "", "a prediction that is not answered"),
-        (
-            "> **Answer.** That.",
-            "> **Predict.** And?\n\n> **Answer.** That.",
-            "a prediction that is not answered",
-        ),
+        ("> **Predict.** What?", ANSWERED_TOO_EARLY, "a figure without a prediction"),
+        (ANSWER, "", "a prediction that is not answered"),
+        (ANSWER, f"> **Predict.** And?\n\n{ANSWER}", "a prediction that is not answered"),
         ("figure:lines", "figure:line", "there is no figure line"),
         ("[1](=1)", "1", "the lesson has no number that its code gives"),
         ("([paper](https://example.org))", "", "the source 'A. Author, 123 pages, 2003 .' has no address"),
@@ -185,7 +176,7 @@ def test_a_lesson_with_everything_has_no_findings():
         ("x = 29.5", f"x = 29.5  # {'-' * 50}", "code 62 columns wide"),
     ],
 )
-def test_what_is_missing_or_wrong_is_found(old: str, new: str, problem: str) -> None:
+def test_what_is_missing_or_wrong_is_found(old, new, problem):
     assert old in GOOD
     assert [finding.problem for finding in lint(GOOD.replace(old, new))] == [problem]
 
@@ -215,7 +206,7 @@ def test_a_prediction_that_quotes_a_number_of_an_answer_above_it_is_found():
     again = (
         "> **Answer.** It is [5](=2+3).\n\n## Two\n\n> **Predict.** And at [5](=2+3)?\n\n> **Answer.** No."
     )
-    (found,) = lint(GOOD.replace("> **Answer.** That.", again))
+    (found,) = lint(GOOD.replace(ANSWER, again))
     assert found.problem == "the prediction quotes 5, which an answer above it gives away"
 
 

@@ -3,7 +3,6 @@
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises import diagnosis
 from course.authoring.scaffold import Function, new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
 from course.catalog.reading import BLANK
@@ -68,22 +67,6 @@ def fill(mini):
 
 def contents(folder):
     return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
-
-def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(mini, run):
-    new_exercise(Catalog(), "tripling")
-    fill(mini)
-    (nothing,) = audit(Catalog(), "tripling", grade=lambda _: ()).problems
-    assert nothing.help == "Run `course author build tripling`."
-    diagnosis.build(Catalog(), Catalog().exercise("tripling"))
-    (nothing,) = audit(Catalog(), "tripling", grade=lambda _: ()).problems
-    assert nothing.help == "Run `course author build tripling --accept`, and read what it says."
-    assert diagnosis.accept(Catalog(), Catalog().exercise("tripling")).changes == ()
-    assert audit(Catalog(), "tripling").problems == ()
-    report = run()
-    assert [f"{p.where} {p.message}" for p in report.problems] == []
-    assert report.exercises == ("doubling", "halving", "tripling")
-    assert Catalog().exercise("tripling").order == 3
 
 
 def test_a_question_that_raises_is_named_with_its_line(mini):

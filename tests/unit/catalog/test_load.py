@@ -1,5 +1,6 @@
 """Reading course files, where they are found, and what is said when one is wrong."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -9,12 +10,26 @@ from course.catalog.load import Catalog
 from course.catalog.models import Task
 from course.errors import ContentError, InternalError, NotFoundError, UsageError
 
+MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"
 EXERCISE = "exercises/doubling/exercise.toml"
 LESSON = "lessons/half-as-much.md"
 SYLLABUS = "lessons/syllabus.toml"
 TITLE_AND_POINTS = 'title = "Twice a number"\npoints = 4\n'
 YOURS = "[task.yours]\n{}\n[task.fits]"
 VERSION = 'version = "0.1.0"'
+
+
+@pytest.fixture
+def mini(tmp_path, monkeypatch):
+    """The folder of a private copy of the miniature course, in use as the course."""
+    folder = shutil.copytree(MINI, tmp_path / "mini")
+    monkeypatch.setenv("COURSE_CONTENT", str(folder))
+    return folder
+
+
+@pytest.fixture
+def catalog(mini):
+    return Catalog()
 
 
 def edit(path, old, new):

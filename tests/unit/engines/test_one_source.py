@@ -22,6 +22,7 @@ from course.figures import engines as drawn
 from course.physics.contact.models import SoftConvex, drop
 
 ROOT = Path(__file__).resolve().parents[3]
+DIRECT = ROOT / "tests" / "benchmarks" / "engines_direct"
 PAGES = (
     "course/lessons/engines.md",
     "course/lessons/what-contact-leaves-over.md",
@@ -262,13 +263,10 @@ def test_the_tables_of_the_page_are_made_from_the_measurements():
     assert page.count("<!-- made: ") == 4
 
 
-def test_the_direct_scripts_confirm_at_least_four_results_of_every_engine():
-    folder = ROOT / "tests" / "benchmarks" / "engines_direct"
-    sys.path.insert(0, str(folder))
-    try:
-        import compare
-    finally:
-        sys.path.remove(str(folder))
+def test_the_direct_scripts_confirm_at_least_four_results_of_every_engine(monkeypatch):
+    monkeypatch.syspath_prepend(DIRECT)
+    import compare
+
     results = json.loads(compare.RESULTS.read_text(encoding="utf-8"))
     assert set(results) == set(ENGINES)
     for engine, lines in results.items():
@@ -279,10 +277,9 @@ def test_the_direct_scripts_confirm_at_least_four_results_of_every_engine():
 
 
 def test_what_is_said_of_single_options_is_what_the_direct_scripts_found():
-    path = ROOT / "tests" / "benchmarks" / "engines_direct" / "results.json"
     found = {
         (engine, line["test"], line["setting"]): line
-        for engine, lines in json.loads(path.read_text(encoding="utf-8")).items()
+        for engine, lines in json.loads((DIRECT / "results.json").read_text(encoding="utf-8")).items()
         for line in lines
     }
     # The older Bullet and the tonne: a hundred iterations are too few, a thousand hold it from every start.
@@ -307,8 +304,7 @@ def test_what_is_said_of_single_options_is_what_the_direct_scripts_found():
 
 
 def test_a_direct_script_imports_nothing_of_the_course():
-    folder = ROOT / "tests" / "benchmarks" / "engines_direct"
-    scripts = [*folder.glob("direct_*.py"), folder / "measures.py"]
+    scripts = [*DIRECT.glob("direct_*.py"), DIRECT / "measures.py"]
     assert len(scripts) == len(ENGINES) + 1
     for script in scripts:
         text = script.read_text(encoding="utf-8")

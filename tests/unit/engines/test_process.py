@@ -1,6 +1,7 @@
 """What an engine's process answers, whatever its engine does; its parent always gets a reply, and soon."""
 
 import os
+import re
 import signal
 import sys
 import time
@@ -123,17 +124,33 @@ def test_a_reply_comes_back_as_it_is():
     assert reply["value"] != reply["value"]
 
 
-@pytest.mark.skipif(os.name != "posix", reason="names of signals")
-def test_an_abort_is_a_crash_with_the_signal_and_the_last_words():
-    with engine("sys.stderr.write('so long\\nODE INTERNAL ERROR 1: assertion\\n'); os.abort()") as process:
+signals = pytest.mark.skipif(os.name != "posix", reason="names of signals")
+REFUSES = 'print(\'{"status": "unavailable", "message": "ImportError: libvulkan.so.1"}\', flush=True)'
+DIES = "import sys, os; sys.stderr.write('Illegal instruction\\n'); os._exit(132)"
+ABORTS = "sys.stderr.write('so long\\nODE INTERNAL ERROR 1: assertion\\n'); os.abort()"
+
+
+@pytest.mark.parametrize(
+    ("after_start", "before_start", "status", "says"),
+    [
+        ("os._exit(7)", "", "crash", r"It ended with exit code 7\."),
+        pytest.param(
+            ABORTS, "", "crash", r"It was ended by SIGABRT\. Its last words: ODE INTERNAL ERROR 1: assertion",
+            marks=signals,
+        ),
+        ("print('Segmentation fault (just kidding)', flush=True)", "", "crash", ".+"),
+        ("", REFUSES, "unavailable", r"ImportError: libvulkan\.so\.1"),
+        ("", DIES, "unavailable", ".*Illegal instruction.*"),
+    ],
+    ids=["ends", "aborts", "answers nonsense", "cannot load", "dies while it loads"],
+)  # fmt: skip
+def test_a_process_without_an_answer_is_a_crash_and_before_it_started_unavailable(
+    after_start, before_start, status, says
+):
+    with engine(after_start, before_start) as process:
         reply = process.ask(JOB, 10)
-    assert reply["status"] == "crash"
-    assert reply["message"] == "It was ended by SIGABRT. Its last words: ODE INTERNAL ERROR 1: assertion"
-
-
-def test_an_end_without_an_answer_is_a_crash_with_its_exit_code():
-    with engine("os._exit(7)") as process:
-        assert process.ask(JOB, 10) == {"status": "crash", "message": "It ended with exit code 7."}
+    assert reply["status"] == status
+    assert re.fullmatch(says, reply["message"])
 
 
 def test_a_hang_ends_at_the_deadline_and_so_does_the_process():
@@ -144,25 +161,6 @@ def test_a_hang_ends_at_the_deadline_and_so_does_the_process():
         assert "0.3 s" in reply["message"]
         assert time.monotonic() - started < 60
         assert process.pid is None
-
-
-def test_an_answer_that_is_none_is_a_crash():
-    with engine("print('Segmentation fault (just kidding)', flush=True)") as process:
-        assert process.ask(JOB, 10)["status"] == "crash"
-
-
-def test_an_engine_that_cannot_load_is_unavailable_with_the_reason():
-    refusal = 'print(\'{"status": "unavailable", "message": "ImportError: libvulkan.so.1"}\', flush=True)'
-    with engine("", refusal) as process:
-        reply = process.ask(JOB, 10)
-    assert reply == {"status": "unavailable", "message": "ImportError: libvulkan.so.1"}
-
-
-def test_an_engine_that_dies_while_it_loads_is_unavailable_not_crashed():
-    with engine("", "import sys, os; sys.stderr.write('Illegal instruction\\n'); os._exit(132)") as process:
-        reply = process.ask(JOB, 10)
-    assert reply["status"] == "unavailable"
-    assert "Illegal instruction" in reply["message"]
 
 
 def test_an_engine_that_loads_for_ever_is_ended(monkeypatch):

@@ -116,20 +116,6 @@ def test_a_checkout_file_that_cannot_be_read_leaves_the_bare_name(monkeypatch, m
     assert requirement_of("mujoco").text == "mujoco"
 
 
-@pytest.mark.parametrize(
-    ("line", "group", "applies"),
-    [
-        ("x>=1", "", True),
-        ("x>=1; extra == 'dart'", "dart", True),
-        ("x>=1; (python_version < '3.0') and extra == 'bullet'", "bullet", False),
-        ("x>=1; python_version >= '3.0' and extra == 'bullet'", "bullet", True),
-    ],
-)
-def test_a_requirement_says_whether_this_machine_is_served(metadata, line, group, applies):
-    metadata[:] = [line]
-    assert requirement_of("x") == Requirement("x", ">=1", group, applies)
-
-
 def test_every_extra_is_a_part_and_brings_what_the_part_needs():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     optional = project["optional-dependencies"]
@@ -140,18 +126,21 @@ def test_every_extra_is_a_part_and_brings_what_the_part_needs():
 
 
 @pytest.mark.parametrize(
-    ("marker", "served"),
+    ("marker", "group", "applies", "served"),
     [
-        ("", ""),
-        ("; extra == 'bullet'", ""),
-        ("; (python_version < '3.0' and sys_platform == 'linux') and extra == 'bullet'",
+        ("", "", True, ""),
+        ("; extra == 'bullet'", "bullet", True, ""),
+        ("; (python_version < '3.0' and sys_platform == 'linux') and extra == 'bullet'", "bullet", False,
          "python_version < '3.0' and sys_platform == 'linux'"),
-        ("; python_version < '3.0' and extra == 'bullet'", "python_version < '3.0'"),
-        ("; extra == 'bullet' and python_version < '3.0'", "python_version < '3.0'"),
+        ("; python_version < '3.0' and extra == 'bullet'", "bullet", False, "python_version < '3.0'"),
+        ("; extra == 'bullet' and python_version < '3.0'", "bullet", False, "python_version < '3.0'"),
+        ("; python_version >= '3.0' and extra == 'bullet'", "bullet", True, "python_version >= '3.0'"),
     ],
 )  # fmt: skip
-def test_which_machines_are_served_is_said_without_the_extra(metadata, marker, served):
+def test_a_requirement_says_which_machines_are_served_and_whether_this_one_is(
+    metadata, marker, group, applies, served
+):
     metadata[:] = [f"x>=1{marker}"]
     found = requirement_of("x")
-    assert found.served == served
-    assert ("there are some where python_version < '3.0'" in found.unserved) is bool(served)
+    assert (found, found.served) == (Requirement("x", ">=1", group, applies), served)
+    assert (f"there are some where {served}" in found.unserved) is not applies

@@ -10,7 +10,6 @@ from course.figures import contact, engines, integrators, robots, sim_to_real
 from course.figures.robots import FALLEN, STANDING
 from course.figures.style import METHODS, house_style
 from course.physics.dynamics import TwoLinkArm
-from course.physics.invariants import convergence_order
 from course.physics.rotation import kinetic_energy
 from course.simulations.experiments.dynamics import from_hanging, swing
 
@@ -27,15 +26,6 @@ def test_growth_passes_one_at_the_stability_limit(method, limit):
 
 def test_explicit_euler_grows_at_every_step():
     assert integrators._growth("explicit_euler", 0.01) > 1.0 + 1e-5
-
-
-@pytest.mark.parametrize(
-    ("method", "order"),
-    [("explicit_euler", 1), ("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)],
-)
-def test_errors_drawn_have_the_slopes_written_beside_them(method, order):
-    hs, errors = integrators._errors_at_end(method, np.array([640, 1280, 2560]))
-    assert convergence_order(hs, errors) == pytest.approx(order, abs=0.05)
 
 
 def test_every_curve_of_the_energy_figure_rises_and_runge_kutta_crosses_verlet_where_marked():

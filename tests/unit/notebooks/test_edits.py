@@ -7,7 +7,6 @@ import json
 import random
 import re
 import warnings
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +15,6 @@ from course.handed_in.notebook import RECORD, notebook_source, opened
 from course.physics import systems
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
-
-RawCell = dict[str, Any]
 
 EXPERIMENTS = (
     "print('hello')",

@@ -2,8 +2,8 @@
 
 import asyncio
 import json
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from threading import Thread
 
 import pytest
 
@@ -25,19 +25,9 @@ PATIENCE = 60
 
 def said_by_a_page(widget, *messages):
     """Messages as a kernel hands them on from a subshell: on a thread without a loop."""
-    troubles = []
-
-    def say():
-        try:
-            for message in messages:
-                widget._handle_custom_msg(message, [])
-        except BaseException as error:
-            troubles.append(error)
-
-    thread = Thread(target=say)
-    thread.start()
-    thread.join()
-    assert not troubles
+    with ThreadPoolExecutor(1) as thread:
+        for message in messages:
+            thread.submit(widget._handle_custom_msg, message, []).result()
 
 
 def test_a_world_in_a_cell_moves_when_a_page_on_another_thread_says_so():

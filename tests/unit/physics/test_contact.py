@@ -1,4 +1,4 @@
-"""Contact as geometry, and its solver: blows that keep what they must, loads that are carried."""
+"""Contact: geometry, the solver and what its sweeps reach, and models of one ball on one floor."""
 
 import math
 from dataclasses import dataclass
@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from course.physics.contact import Plane, Surface, meet, meet_plane
 from course.physics.contact.impulses import Impulses, Motion, normal_speed, solve
+from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
+from course.physics.solver import Chain, iterations_to, stack_impulses
 
 ORIGIN = np.zeros(3)
 
@@ -53,42 +55,34 @@ RADIUS = 0.5
 
 @dataclass
 class Blow:
-    """Two balls before and after a blow, and what they exchanged."""
+    """Two balls, a row each, before or after a blow, and what they exchanged."""
 
-    velocity: tuple[np.ndarray, np.ndarray]
-    spin: tuple[np.ndarray, np.ndarray]  # rad/s, world axes
-    push: float
-    rub: np.ndarray
-    masses: tuple[float, float]
+    masses: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray  # rad/s, world axes
+    push: float = 0.0
+    rub: np.ndarray | float = 0.0
 
     def momentum(self):
-        return self.masses[0] * self.velocity[0] + self.masses[1] * self.velocity[1]
+        return self.masses @ self.velocity
 
     def energy(self):
-        sides = zip(self.masses, self.velocity, self.spin, strict=True)
-        return sum(0.5 * m * (v @ v + 0.4 * RADIUS**2 * (w @ w)) for m, v, w in sides)
+        turning = 0.4 * RADIUS**2 * np.sum(self.spin**2, axis=1)
+        return 0.5 * self.masses @ (np.sum(self.velocity**2, axis=1) + turning)
 
 
 def strike(normal, v, m, e, mu, spins):
     """The second ball lies in the direction of the normal; both of radius 0.5 m, and not turning."""
-    velocity = np.array(v, dtype=float)
-    give = 1.0 / np.array(m)
-    motion = Motion(velocity.copy(), np.zeros((2, 3)), give, 2.5 * give * spins)
-    normals, still = normal[None, :], np.zeros(3)
+    before = Blow(np.array(m), np.array(v, dtype=float), np.zeros((2, 3)))
+    give = 1.0 / before.masses
+    motion = Motion(before.velocity.copy(), np.zeros((2, 3)), give, 2.5 * give * spins)
+    normals = normal[None, :]
     closing = -normal_speed([(0, 1)], normals, motion.velocity)
     impulses = Impulses(np.zeros(1), np.zeros((1, 3)))
     if closing[0] > 0:
         solve([(0, 1)], normals, motion, impulses, np.array([True]), e * closing, mu)
-    rims = motion.rim / RADIUS
-    before = Blow((velocity[0], velocity[1]), (still, still), 0.0, still, m)
-    after = Blow(
-        (motion.velocity[0], motion.velocity[1]),
-        (rims[0], rims[1]),
-        float(impulses.push[0]),
-        impulses.rub[0],
-        m,
-    )
-    return before, after
+    spin = motion.rim / RADIUS
+    return before, Blow(before.masses, motion.velocity, spin, impulses.push[0], impulses.rub[0])
 
 
 @given(vectors, vectors, vectors, masses, masses, st.floats(0, 1), st.floats(0, 2), st.booleans())
@@ -194,3 +188,135 @@ def test_friction_is_round_so_no_direction_slides_more_easily():
         _, after = strike(np.array([0.0, 0.0, -1.0]), (push, [0, 0, 0]), (1.0, math.inf), 0.0, 0.3, False)
         slid.append(float(np.linalg.norm(after.velocity[0])))
     np.testing.assert_allclose(slid, 0.7, atol=1e-12)
+
+
+# -- sweeps ----------------------------------------------------------------------------------------------
+
+
+def test_a_stack_settles_so_that_each_contact_carries_what_is_above_and_never_pulls():
+    impulses = stack_impulses(4, 500)
+    np.testing.assert_allclose(impulses[-1], [4.0, 3.0, 2.0, 1.0], atol=1e-9)
+    assert np.all(impulses >= 0.0)
+
+
+def test_an_accuracy_that_is_not_reached_is_said():
+    with pytest.raises(ValueError, match="do not settle"):
+        iterations_to(20, 0.01, limit=100)
+
+
+def test_no_boxes_are_no_stack():
+    with pytest.raises(ValueError, match="a box or more"):
+        stack_impulses(0, 1)
+
+
+def test_a_chain_with_work_enough_swings_like_a_pendulum():
+    # One link is a pendulum: let go level, it passes the lowest point after K(sin 45°) sqrt(l/g).
+    chain = Chain(links=1, length=1.0)
+    assert chain.stretch(1.0, 0.001, 1, 1).max() < 1e-12
+
+
+def test_a_frame_that_does_not_divide_is_refused():
+    with pytest.raises(ValueError, match="does not divide"):
+        Chain().stretch(1.0, 0.3, 1, 1)
+
+
+# -- one ball, one floor ---------------------------------------------------------------------------------
+
+H, G = 0.01, 9.81
+
+
+def lies(model, seconds=3.0):
+    """How deep a ball lies after a while, m."""
+    return -float(drop(model, 0.0, 0.0, H, round(seconds / H), G)[0][-1])
+
+
+@given(st.floats(100.0, 1e4), st.floats(5.0, 50.0), st.floats(0.5, 2.0))
+def test_a_penalty_floor_carries_a_ball_at_its_weight_over_the_stiffness(k, c, m):
+    assert lies(Penalty(k, c, m), 20.0) == pytest.approx(m * G / k, rel=1e-3)
+
+
+def test_a_penalty_floor_beyond_the_stability_limit_throws_the_ball():
+    assert np.abs(drop(Penalty(5e4, 20.0), 0.0, 0.0, H, 300, G)[0]).max() > 1.0  # h omega = 2.2
+
+
+@given(st.floats(100.0, 1e9), st.floats(0.0, 1e3), st.floats(0.5, 2.0))
+def test_erp_and_cfm_are_a_spring_and_a_damper_integrated_implicitly(k, c, m):
+    erp, cfm = erp_cfm(k, c, H)
+    gap, v = -0.003, -0.02
+    model_gap, model_v = Constraint(erp=erp, cfm=cfm, mass=m).step(gap, v, H, G)
+    # (m + h c + h² k) v' = m v - h m g - h k gap
+    implicit = (m * v - H * m * G - H * k * gap) / (m + H * c + H * H * k)
+    assert model_v == pytest.approx(implicit, rel=1e-9, abs=1e-12)
+    assert model_gap == pytest.approx(gap + H * implicit, abs=1e-12)
+
+
+def test_a_constraint_holds_a_ball_exactly_and_never_pulls():
+    gaps, speeds = drop(Constraint(), 0.0, 0.0, H, 100, G)
+    assert not gaps.any()
+    assert not speeds.any()
+    leaving = drop(Constraint(), 0.0, 1.0, H, 5, G)[1]
+    np.testing.assert_allclose(leaving, 1.0 - G * H * np.arange(6))
+
+
+@pytest.mark.parametrize("timeconst", [0.02, 0.05])
+def test_mujocos_floor_lets_every_ball_sink_as_its_impedance_says(timeconst):
+    model = SoftConvex(timeconst)
+    assert lies(model) == pytest.approx(model.resting_depth(G), rel=1e-6)
+    flat = SoftConvex(timeconst, least=0.9, most=0.9)  # d k r = (1 - d) g, with k = 1 / (d timeconst²)
+    assert flat.resting_depth(G) == pytest.approx(0.1 * G * timeconst**2)
+
+
+@pytest.mark.parametrize("h", [0.01, 0.002])
+def test_mujoco_itself_does_the_same_step_by_step(h):
+    mujoco = pytest.importorskip("mujoco")
+    world = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="{h}"/><worldbody><geom type="plane" size="5 5 1"/>
+        <body pos="0 0 0.52"><freejoint/><geom type="sphere" size="0.5" mass="3"/></body>
+        </worldbody></mujoco>"""
+    )
+    data = mujoco.MjData(world)
+    gaps = drop(SoftConvex(), 0.02, 0.0, h, 300, G)[0]
+    for gap in gaps[1:]:
+        mujoco.mj_step(world, data)
+        assert data.qpos[2] - 0.5 == pytest.approx(gap, abs=1e-6)
+
+
+def test_a_split_correction_takes_out_its_share_of_the_overlap_each_step():
+    gaps, _ = drop(Constraint(erp=0.3, split=True), -0.02, 0.0, H, 5, G)
+    np.testing.assert_allclose(gaps, -0.02 * 0.7 ** np.arange(6))
+
+
+def test_below_the_threshold_nothing_bounces():
+    for threshold, bounces in ((0.5, True), (1.0, False)):
+        _, speeds = drop(Constraint(0.5, threshold), 0.04, 0.0, 0.001, 200, G)  # arrives at 0.89 m/s
+        assert bool(np.any(speeds > 0.1)) is bounces
+
+
+@given(st.floats(0.0, 0.5 * math.pi))
+def test_the_cone_stops_a_block_equally_far_in_every_direction(angle):
+    end = slide_across(angle, 2.0, 0.3, 1e-3, limit="cone")[-1]
+    assert np.linalg.norm(end) == pytest.approx(4 / (2 * 0.3 * G) - 2.0 * 1e-3 / 2, abs=5e-6)
+    assert math.atan2(end[1], end[0]) == pytest.approx(angle, abs=1e-9)
+
+
+def test_the_outer_pyramid_is_the_cone_along_its_axes_and_another_floor_between_them():
+    along, between, across = (
+        np.linalg.norm(slide_across(angle, 2.0, 0.3, 1e-4, limit="outer")[-1])
+        for angle in (0.0, math.radians(20), 0.25 * math.pi)
+    )
+    assert along == pytest.approx(0.6796, abs=2e-4)
+    assert across == pytest.approx(along * math.sqrt(0.5), rel=1e-3)
+    assert across < between < along
+
+
+def test_the_inner_pyramid_is_mujocos():
+    """Where MuJoCo 3.3 took a box with its default cone at 2 m/s and mu = 0.3; angles in degrees."""
+    for start, far, bent in ((0, 0.679, 0.0), (20, 0.807, 32.7), (45, 0.960, 45.0)):
+        end = slide_across(math.radians(start), 2.0, 0.3, 1e-3, limit="inner")[-1]
+        assert np.linalg.norm(end) == pytest.approx(far, abs=1e-3)
+        assert math.degrees(math.atan2(end[1], end[0])) == pytest.approx(bent, abs=0.05)
+
+
+def test_a_limit_that_is_none_is_refused():
+    with pytest.raises(ValueError, match="cone, outer, inner"):
+        slide_across(0.0, 2.0, 0.3, 1e-3, limit="square")

@@ -1,4 +1,7 @@
-"""The textbook steppers, and values between two samples. The numbers are theory's, not theirs."""
+"""The textbook steppers, values between two samples, and what both are measured against and with.
+
+The numbers are theory's, not theirs.
+"""
 
 import math
 
@@ -20,10 +23,12 @@ from course.physics.integrators import (
     trajectory,
 )
 from course.physics.invariants import (
+    angular_momentum,
     convergence_order,
     energy,
     jacobian,
     relative_change,
+    spectral_radius,
     symplecticity_defect,
 )
 
@@ -43,7 +48,7 @@ PROBLEMS = [
     (systems.ForcedOscillator(1.3, 1.5, 2.1), [0.8], [-0.6]),
     (systems.Kepler(1.0), [0.9, 0.1], [0.1, 1.1]),
 ]
-DISSIPATIVE = [
+DAMPED = [
     (systems.DampedOscillator(1.3, 0.5), [0.8], [0.6]),
     (systems.VanDerPol(0.5, 1.1), [0.8], [0.6]),
 ]
@@ -63,21 +68,18 @@ def measured_order(stepper, system, q0, v0):
     return convergence_order(hs, errors)
 
 
-@pytest.mark.parametrize("stepper", ALL, ids=repr)
-@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: type(p[0]).__name__)
-def test_every_method_has_the_order_it_declares(stepper, problem):
-    assert measured_order(stepper, *problem) == pytest.approx(stepper.order, abs=0.12)
-
-
-@pytest.mark.parametrize("stepper", [ExplicitEuler(), RK4()], ids=repr)
-@pytest.mark.parametrize("problem", DISSIPATIVE, ids=lambda p: type(p[0]).__name__)
-def test_methods_without_a_splitting_keep_their_order_under_damping(stepper, problem):
-    assert measured_order(stepper, *problem) == pytest.approx(stepper.order, abs=0.12)
-
-
-@pytest.mark.parametrize("stepper", [VelocityVerlet(), VelocityVerlet(drift_first=True)], ids=repr)
-def test_verlet_drops_to_first_order_under_damping_as_its_docstring_says(stepper):
-    assert measured_order(stepper, *DISSIPATIVE[0]) == pytest.approx(1.0, abs=0.15)
+@pytest.mark.parametrize(
+    ("stepper", "problem", "order"),
+    [
+        *[(stepper, problem, stepper.order) for stepper in ALL for problem in PROBLEMS],
+        # Without a splitting, methods keep their order under damping; Verlet drops, as its docstring says.
+        *[(stepper, problem, stepper.order) for stepper in (ExplicitEuler(), RK4()) for problem in DAMPED],
+        *[(VelocityVerlet(drift_first), DAMPED[0], 1) for drift_first in (False, True)],
+    ],
+    ids=lambda one: type(one[0]).__name__ if isinstance(one, tuple) else repr(one),
+)
+def test_every_method_has_the_order_it_declares(stepper, problem, order):
+    assert measured_order(stepper, *problem) == pytest.approx(order, abs=0.12)
 
 
 @pytest.mark.parametrize(("position_first", "worst"), [(False, 0.310), (True, 0.517)])
@@ -215,3 +217,121 @@ def test_the_first_of_several_crossings_is_found_far_between_samples():
     t = np.linspace(0.0, 10.0, 101)
     assert first_crossing(t, np.cos(t), -np.sin(t)) == pytest.approx(math.pi / 2, abs=1e-7)
     assert math.isnan(first_crossing(t, np.ones_like(t), np.zeros_like(t)))
+
+
+# -- the reference ---------------------------------------------------------------------------------------
+
+TIMES = [0.6, 1.1, 2.9, 5.0]
+Q0, V0 = [0.8, -0.3], [-0.4, 1.1]
+
+
+def test_the_reference_brings_an_eccentric_orbit_back_after_one_period():
+    e = 0.6
+    q0, v0 = [1 - e, 0.0], [0.0, math.sqrt((1 + e) / (1 - e))]
+    q, v = exact.reference(systems.Kepler(1.0), q0, v0, [2 * math.pi])
+    assert q[0] == pytest.approx(q0, abs=1e-10)
+    assert v[0] == pytest.approx(v0, abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        systems.Oscillator(2.3),
+        systems.DampedOscillator(2.3, 0.7),
+        systems.DampedOscillator(0.3, 0.7),
+        systems.ForcedOscillator(2.3, 1.5, 3.1),
+        systems.ForcedOscillator(2.3, 1.5, 2.3),
+        systems.Pendulum(9.81, 1.2),
+    ],
+    ids=repr,
+)
+def test_the_solution_is_the_reference_with_and_without_a_closed_form(system):
+    for found, expected in zip(
+        exact.solution(system, Q0, V0, TIMES, 0.2), exact.reference(system, Q0, V0, TIMES, 0.2), strict=True
+    ):
+        assert found.shape == (4, 2)
+        assert found == pytest.approx(expected, abs=1e-10)
+
+
+def test_times_that_run_backwards_are_refused():
+    with pytest.raises(ValueError, match="rise"):
+        exact.reference(systems.Oscillator(1.0), [1.0], [0.0], [1.0, 0.5])
+
+
+def test_a_solution_that_blows_up_is_refused_instead_of_returned():
+    class Explosion:
+        def __call__(self, t, q, v):
+            return np.exp(np.minimum(q, 300.0))
+
+        def params(self):
+            return {}
+
+    with np.errstate(all="ignore"), pytest.raises(ValueError, match="converge"):
+        exact.reference(Explosion(), [1.0], [5.0], [3.0])
+
+
+def test_closed_forms_refuse_parameters_they_do_not_cover():
+    with pytest.raises(ValueError, match="omega"):
+        exact.damped_oscillator(systems.DampedOscillator(1.0, 2.0), Q0, V0, 1.0)
+    with pytest.raises(ValueError, match="resonance"):
+        exact.forced_oscillator(systems.ForcedOscillator(2.0, 1.0, 2.0), Q0, V0, 1.0)
+
+
+# -- instruments -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("system", "q0", "v0"),
+    [
+        (systems.FreeFall(9.81), [0.0, 10.0], [3.0, 1.0]),
+        (systems.Oscillator(2.0), [1.0, 0.2], [0.0, -1.0]),
+        (systems.Pendulum(9.81, 1.3), [1.2], [0.5]),
+        (systems.Kepler(1.0), [0.8, 0.1], [0.2, 1.1]),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_the_energy_of_the_true_motion_is_constant(system, q0, v0):
+    q, v = exact.reference(system, q0, v0, np.linspace(0.0, 3.0, 7))
+    assert energy(system, q, v) == pytest.approx(float(energy(system, q0, v0)), rel=1e-11)
+
+
+def test_a_driven_or_damped_system_has_no_energy_to_conserve():
+    with pytest.raises(TypeError, match="DampedOscillator"):
+        energy(systems.DampedOscillator(1.0, 0.1), [1.0], [0.0])
+
+
+def test_the_angular_momentum_of_an_orbit_is_constant():
+    q, v = exact.reference(systems.Kepler(1.3), [0.8, 0.1], [0.2, 1.1], np.linspace(0.0, 3.0, 7))
+    assert angular_momentum(q, v) == pytest.approx(0.8 * 1.1 - 0.1 * 0.2, rel=1e-11)
+
+
+def test_relative_change_is_signed_and_starts_at_zero():
+    assert relative_change([-2.0, -1.0, -3.0]) == pytest.approx([0.0, 0.5, -0.5])
+
+
+def test_the_order_of_scattered_points_is_the_least_squares_slope():
+    hs, errors = [0.1, 0.05, 0.025, 0.01], [0.9, 0.3, 0.2, 0.04]
+    assert convergence_order(hs, errors) == pytest.approx(np.polyfit(np.log(hs), np.log(errors), 1)[0])
+
+
+@pytest.mark.parametrize(("hs", "errors"), [([0.1], [1.0]), ([0.1, 0.2], [1.0]), ([0.1, 0.2], [1.0, 0.0])])
+def test_points_that_have_no_slope_are_refused(hs, errors):
+    with pytest.raises(ValueError):
+        convergence_order(hs, errors)
+
+
+def test_the_jacobian_of_a_smooth_map_is_found_to_ten_digits():
+    found = jacobian(lambda y: np.array([math.sin(y[0]) * y[1], y[0] ** 3]), [0.7, 2.0])
+    assert found == pytest.approx(np.array([[2 * math.cos(0.7), math.sin(0.7)], [3 * 0.49, 0.0]]), abs=1e-9)
+
+
+def test_preserving_volume_is_not_enough_to_be_symplectic_in_two_degrees_of_freedom():
+    stretch = np.diag([2.0, 0.5, 1.0, 1.0])  # determinant one, yet q1 and its own velocity do not match
+    assert np.linalg.det(stretch) == pytest.approx(1.0)
+    assert symplecticity_defect(stretch) == pytest.approx(1.0)
+    assert symplecticity_defect(np.diag([2.0, 3.0, 0.5, 1 / 3.0])) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_the_spectral_radius_takes_the_modulus_of_negative_and_complex_eigenvalues():
+    assert spectral_radius([[0.2, 5.0], [0.0, -1.4]]) == pytest.approx(1.4)
+    assert spectral_radius([[0.0, 2.0], [-2.0, 0.0]]) == pytest.approx(2.0)

@@ -4,7 +4,7 @@ import math
 import sys
 import types
 from pathlib import Path
-from typing import ClassVar
+from types import SimpleNamespace
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -66,36 +66,20 @@ def test_the_system_sets_each_velocity_when_it_is_configured_and_again_when_the_
     """With stand-ins for Gazebo's bindings, named as its documentation names them."""
     done = []
 
-    class Model:
-        def __init__(self, entity):
-            self.entity = entity
+    def model(entity):
+        return SimpleNamespace(joint_by_name=lambda ecm, name: f"{entity}/{name}")
 
-        def joint_by_name(self, ecm, name):
-            return f"{self.entity}/{name}"
+    def joint(entity):
+        return SimpleNamespace(reset_velocity=lambda ecm, velocities: done.append((ecm, entity, velocities)))
 
-    class Joint:
-        def __init__(self, entity):
-            self.entity = entity
-
-        def reset_velocity(self, ecm, velocities):
-            done.append((ecm, self.entity, velocities))
-
-    class Element:
-        said: ClassVar = {"joints": "puck-x puck-turn", "puck-x": 2.0, "puck-turn": -0.5}
-
-        def get_string(self, name):
-            return self.said[name]
-
-        get_double = get_string
-
-    bindings = types.ModuleType("gz.sim8")
-    bindings.Model, bindings.Joint = Model, Joint
-    monkeypatch.setitem(sys.modules, "gz", types.ModuleType("gz"))
-    monkeypatch.setitem(sys.modules, "gz.sim8", bindings)
+    said = {"joints": "puck-x puck-turn", "puck-x": 2.0, "puck-turn": -0.5}
+    element = SimpleNamespace(get_string=said.get, get_double=said.get)
+    monkeypatch.setitem(sys.modules, "gz", SimpleNamespace())
+    monkeypatch.setitem(sys.modules, "gz.sim8", SimpleNamespace(Model=model, Joint=joint))
     script = types.ModuleType("gazebo_start")
     exec(start_script(sdf(choose("head-on"))), script.__dict__)  # as a file of its own, without the course
     system = script.get_system()
-    system.configure("puck", Element(), "ecm", None)
+    system.configure("puck", element, "ecm", None)
     assert done == [("ecm", "puck/puck-x", [2.0]), ("ecm", "puck/puck-turn", [-0.5])]
     system.reset(None, "ecm")
     assert len(done) == 4

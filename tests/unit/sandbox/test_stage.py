@@ -11,6 +11,7 @@ from course.sandbox.runs.tape import shot_of
 from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.views.stage import Stage
 from course.sandbox.world.engine import Ledger
+from tests.unit.sandbox.hands import meddle
 
 
 def make(name, **more):
@@ -28,35 +29,6 @@ def go_on_from(stage, t):
     stage.finish()
 
 
-def meddle(stage, chance):
-    """Anything that hands can do."""
-    world = stage.world
-    left, bottom, right, top = world.scene.view
-    moving = [part.name for part in world.parts if not part.fixed]
-    x, y = chance.uniform(left, right), chance.uniform(bottom, top)
-    move = chance.randrange(8)
-    try:
-        if move == 0:
-            stage.act("spawn", chance.choice(["circle", "box"]), x, y)
-        elif move == 1:
-            key, high = chance.choice([("gravity", 20.0), ("restitution", 1.0), ("friction", 1.0)])
-            stage.act("set", key, chance.uniform(0, high))
-        elif move == 2:
-            stage.act("set", "walls", float(chance.randrange(2)))
-        elif move == 3 and moving:
-            stage.act("place", chance.choice(moving), x, y)
-        elif move == 4 and len(moving) > 2:
-            stage.act("remove", chance.choice(moving))
-        elif move == 5 and moving:
-            stage.act("copy", chance.choice(moving))
-        elif move == 6 and moving:
-            stage.act("aim", chance.choice(moving), chance.uniform(-2, 2), chance.uniform(-2, 2))
-        elif moving:
-            stage.act("change", chance.choice(moving), "mass", chance.uniform(0.5, 3))
-    except UsageError:
-        pass  # no room for a copy
-
-
 @pytest.mark.parametrize("name", scene_ids())
 def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name):
     chance, stage = random.Random(name), make(name)
@@ -67,8 +39,8 @@ def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name):
     stage.act("grab", x, y, 0.3)
     stage.act("drag", x + 0.2, y + 0.2)
     watch(stage, 0.2)
+    meddle(stage.world, chance, stage.act)
     stage.act("release")
-    meddle(stage, chance)
     watch(stage, 0.7)
     middle = stage.world.t - 0.2 * stage.world.speed
     go_on_from(stage, middle)
@@ -110,7 +82,7 @@ def played(stage, chance, acts):
     for _ in range(acts):
         before = len(stage._undos)
         state = stage.world.state().tobytes(), dict(stage.world.settings)
-        meddle(stage, chance)
+        meddle(stage.world, chance, stage.act)
         if len(stage._undos) > before:
             states.append(state)
         stage.world.step(chance.randrange(3))
@@ -134,7 +106,7 @@ def test_what_is_played_is_a_recording_that_replays_after_undo_reset_and_going_o
     stage, chance = make("restitution-row"), random.Random(1)
     for _ in range(3):
         watch(stage, 0.4)
-        meddle(stage, chance)
+        meddle(stage.world, chance, stage.act)
     stage.undo()
     stage.finish()
     stage.run(on=True)
@@ -276,6 +248,14 @@ def test_no_run_ends_and_the_comparison_is_made_on_the_way():
     go_on_from(stage, 3.0)
     assert stage.experiment.stage == "done"
     assert len(kept) == 1, "the same run is not kept twice"
+
+
+def test_a_run_is_compared_exactly_where_it_was_told_to():
+    stage = make("head-on", clock=lambda: 0.0)
+    while stage.experiment.stage != "done":
+        before = stage.world.steps
+        stage.tick(0.07)
+    assert before < stage.world.steps == 480
 
 
 @pytest.mark.parametrize("name", ["free-fall", "head-on", "incline", "restitution-row", "box-stack"])

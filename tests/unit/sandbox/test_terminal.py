@@ -46,6 +46,11 @@ class Played(SandboxApp):
             self.now += 1 / 30
             self.tick()
 
+    async def pressed(self, *keys, frames=1):
+        """Keys are pressed, and so many frames are drawn after them."""
+        await self.pilot.press(*keys)
+        self.frames(frames)
+
     def at(self, name):
         """Column and row on the screen of a body."""
         shot = self.world.snapshot()
@@ -64,10 +69,10 @@ def on(scene, size=(80, 24)):
 
     async def played(script):
         app = Played(scene)
-        async with app.run_test(size=size) as pilot:
-            await pilot.pause()
+        async with app.run_test(size=size) as app.pilot:
+            await app.pilot.pause()
             app.frames(1)
-            await script(app, pilot)
+            await script(app, app.pilot)
 
     return lambda script: as_test(script, lambda given, **_: asyncio.run(played(given)))
 
@@ -126,8 +131,7 @@ async def test_wheels_have_keys_and_arrows(app, pilot):
 
 @on("head-on")
 async def test_where_there_are_no_wheels_their_keys_say_so(app, pilot):
-    await pilot.press("A")
-    app.frames(1)
+    await app.pressed("A")
     assert "wheels" in app.keys.text
 
 
@@ -172,8 +176,7 @@ async def test_a_drag_while_time_stands_still_places_and_the_other_button_aims(a
     vx = float(app.world.snapshot().vx[0])
     assert vx == pytest.approx(3.0 * 8 / app.sight.camera.scale, rel=0.15)
     assert app.world.paused
-    await pilot.press("u", "u")
-    app.frames(2)
+    await app.pressed("u", "u", frames=2)
     assert app.at("left-puck") == (x, y)
     assert float(app.world.snapshot().vx[0]) == 2.0
 
@@ -186,11 +189,9 @@ async def test_keys_place_and_aim_copy_and_take_away(app, pilot):
     before = app.at("left-puck")
     await pilot.press("enter", "up", "up", "enter")
     assert app.at("left-puck") == (before[0], before[1] - 2)
-    await pilot.press("v")
-    app.frames(1)
+    await app.pressed("v")
     assert "point where it should fly" in app.keys.text
-    await pilot.press("shift+up", "v")
-    app.frames(1)
+    await app.pressed("shift+up", "v")
     assert "will fly" in app.keys.text
     await pilot.press("shift+down", "y")
     assert "new-1" in {part.name for part in app.world.parts}
@@ -203,23 +204,18 @@ async def test_keys_place_and_aim_copy_and_take_away(app, pilot):
 @on("head-on")
 async def test_the_past_is_looked_at_played_backwards_and_gone_on_from(app, pilot):
     app.frames(30)
-    await pilot.press("less_than_sign")
-    app.frames(1)
+    await app.pressed("less_than_sign")
     assert app.stage.t == pytest.approx(0.5, abs=0.1)
     assert "of 1.0" in app.head.text
-    await pilot.press("c")
-    app.frames(1)
+    await app.pressed("c")
     assert "You look at" in app.keys.text
-    await pilot.press("j")
-    app.frames(6)
+    await app.pressed("j", frames=6)
     assert app.stage.t == pytest.approx(0.3, abs=0.1)
     assert "◀" in app.head.text
-    await pilot.press("space", "enter")
-    app.frames(6)
+    await app.pressed("space", "enter", frames=6)
     assert app.stage.at is None
     assert app.world.t == pytest.approx(0.5, abs=0.15)
-    await pilot.press("Z", "t")
-    app.frames(1)
+    await app.pressed("Z", "t")
     assert app.sight.ghost
     await pilot.press("comma", "k")
     assert app.stage.at is None
@@ -233,8 +229,7 @@ async def test_a_step_while_another_moment_is_being_made_is_refused_in_words(app
     app.frames(30)
     await pilot.press("less_than_sign")
     monkeypatch.setattr(app.stage, "_must_be_idle", busy)
-    await pilot.press("full_stop")
-    app.frames(1)
+    await app.pressed("full_stop")
     assert "One moment." in app.keys.text
 
 
@@ -245,8 +240,7 @@ async def test_the_gallery_opens_any_scene_and_back(app, pilot):
     words = [str(option.prompt) for option in app.screen.query_one(OptionList).options]
     assert len(words) == len(scene_ids())
     assert [word for word in words if word.startswith("✓")] == ["✓ Free fall"]
-    await pilot.press("down", "down", "enter")
-    app.frames(3)
+    await app.pressed("down", "down", "enter", frames=3)
     assert app.stage.chosen.scene.id == "newtons-cradle"
     assert app.world.t > 0
     await pilot.press("escape")
@@ -254,8 +248,7 @@ async def test_the_gallery_opens_any_scene_and_back(app, pilot):
     t = app.world.t
     app.frames(3)
     assert app.world.t == t
-    await pilot.press("escape")
-    app.frames(3)
+    await app.pressed("escape", frames=3)
     assert app.world.t > t, "back in the same run"
 
 
@@ -265,8 +258,7 @@ async def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scen
         await pilot.press("slash")
         assert isinstance(app.screen, LineOverlay)
         app.screen.query_one(Input).value = line
-        await pilot.press("enter")
-        app.frames(1)
+        await app.pressed("enter")
 
     await say("speed 5")
     assert app.stage.chosen.parameters["speed"] == 5
@@ -280,8 +272,7 @@ async def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scen
     for wrong in ("speed", "speed fast", "warp 9", "speed 1e9"):
         await say(wrong)
         assert app.screen.query_one(Input).value == wrong, "what was typed stays"
-        await pilot.press("escape")
-        app.frames(1)
+        await app.pressed("escape")
     assert app.stage.chosen.parameters["speed"] == 5
     await pilot.press("ctrl+s")
     app._film.wait(60)
@@ -335,8 +326,7 @@ async def test_everything_a_mouse_does_keys_can_do(app, pilot):
     await pilot.press(*["left" if dx < 0 else "right"] * abs(dx), *["up" if dy < 0 else "down"] * abs(dy))
     await pilot.press("enter")
     assert app.world.held == "left-puck"
-    await pilot.press("shift+up")
-    app.frames(6)
+    await app.pressed("shift+up", frames=6)
     await pilot.press("enter")
     assert app.world.held is None
     assert app.world.snapshot().y[0] > 0.05
@@ -393,8 +383,7 @@ async def test_when_everything_has_left_the_picture_the_headline_says_so(app, pi
     assert "out of view" not in app.head.text
     app.frames(60)
     assert "out of view: r" in app.head.text
-    await pilot.press("r")
-    app.frames(1)
+    await app.pressed("r")
     assert "out of view" not in app.head.text
 
 
@@ -447,8 +436,7 @@ async def test_a_guess_starts_the_run_and_the_comparison_is_a_line_while_time_go
     page = app.screen.words
     for words in ("your guess", "theory", "simulation", "Your guess is right", "And now:"):
         assert words in page
-    await pilot.press("r")
-    app.frames(3)
+    await app.pressed("r", frames=3)
     assert 0 < app.world.t < 1
     assert [kept.guess for kept in app.kept] == [2.0]
 
@@ -463,13 +451,11 @@ async def test_a_run_without_a_guess_is_compared_with_theory_and_kept_nowhere(ap
 
 @on("head-on")
 async def test_a_run_that_a_hand_was_in_is_compared_with_nothing_and_goes_on(app, pilot):
-    await pilot.press("c")
-    app.frames(90)
+    await app.pressed("c", frames=90)
     await pilot.pause()
     assert app.world.t > 2.5
     assert not isinstance(app.screen, PageOverlay)
-    await pilot.press("p")
-    app.frames(1)
+    await app.pressed("p")
     assert isinstance(app.screen, LineOverlay), "a guess begins anew"
 
 
@@ -489,12 +475,10 @@ async def test_help_names_every_key_and_time_stands_still_meanwhile(app, pilot):
     for key in keys - silent - arrows - {"a", "A", "d", "D"}:
         assert named.get(key, key) in words, key
     steps = app.world.steps
-    await pilot.press("g", "r", "tab")
-    app.frames(5)
+    await app.pressed("g", "r", "tab", frames=5)
     assert app.world.steps == steps
     assert app.panel.display
-    await pilot.press("escape")
-    app.frames(5)
+    await app.pressed("escape", frames=5)
     assert app.world.steps > steps
 
 
@@ -511,19 +495,16 @@ async def test_the_list_of_events_tells_what_happened(app, pilot):
 async def test_in_the_past_nothing_is_told_that_is_still_to_come(app, pilot):
     app.frames(30)
     assert "meet at 3.00 m/s" in app.events.text
-    await pilot.press("less_than_sign", "less_than_sign")
-    app.frames(2)
+    await app.pressed("less_than_sign", "less_than_sign", frames=2)
     assert app.stage.t < 0.5
     assert "meet at" not in app.events.text
-    await pilot.press("k")
-    app.frames(2)
+    await app.pressed("k", frames=2)
     assert "meet at 3.00 m/s" in app.events.text
 
 
 @on("head-on")
 async def test_frames_in_which_nothing_moves_send_nothing(app, pilot):
-    await pilot.press("space")
-    app.frames(2)
+    await app.pressed("space", frames=2)
     sent = app.canvas.sent
     app.frames(20)
     assert app.canvas.sent == sent
@@ -534,17 +515,10 @@ async def test_calm_means_four_pictures_a_second_and_no_flashes(app, pilot):
     await pilot.press("m")
     assert app.calm
     app.frames(1)
-    drawn = 0
-    draw = app._draw
-
-    def counted(now):
-        nonlocal drawn
-        drawn += 1
-        draw(now)
-
-    app._draw = counted
+    drawn, draw = [], app._draw
+    app._draw = lambda now: drawn.append(now) or draw(now)
     app.frames(30)
-    assert 3 <= drawn <= 5
+    assert 3 <= len(drawn) <= 5
     assert app.sight._flashes == []
 
 

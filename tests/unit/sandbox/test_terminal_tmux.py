@@ -11,7 +11,7 @@ import pytest
 from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.views.terminal.picture import Camera
 from course.sandbox.world.world import World
-from tests.terminals import Terminal, needs_tmux
+from tests.terminals import AS_IT_WAS, Terminal, needs_tmux
 
 pytestmark = [pytest.mark.soak, needs_tmux]
 
@@ -49,9 +49,6 @@ def terminal(tmp_path, size):
         yield made
 
 
-CLEAN = "0 0 1"
-
-
 @pytest.mark.parametrize("how", ["C-c", "INT", "TERM", "HUP"])
 def test_the_terminal_is_left_clean_however_one_leaves(terminal, tmp_path, how):
     start(terminal, "newtons-cradle")
@@ -61,7 +58,7 @@ def test_the_terminal_is_left_clean_however_one_leaves(terminal, tmp_path, how):
     else:
         os.kill(int((tmp_path / "pid").read_text()), getattr(signal, f"SIG{how}"))
     terminal.wait("left the scene")
-    assert terminal.state() == CLEAN
+    assert terminal.state() == AS_IT_WAS
 
 
 def test_the_terminal_is_left_clean_after_an_error_which_is_reported_once(terminal):
@@ -69,7 +66,7 @@ def test_the_terminal_is_left_clean_after_an_error_which_is_reported_once(termin
     terminal.wait("RuntimeError: broken on purpose")
     time.sleep(0.5)
     assert terminal.screen().count("\nRuntimeError: broken on purpose") == 1
-    assert terminal.state() == CLEAN
+    assert terminal.state() == AS_IT_WAS
 
 
 def highest(scene, size):
@@ -119,4 +116,4 @@ def test_every_scene_opens_runs_answers_the_mouse_and_leaves_the_terminal_clean(
     terminal.mouse(0, *to, "m")
     terminal.keys("q")
     terminal.wait("left the scene")
-    assert terminal.state() == CLEAN
+    assert terminal.state() == AS_IT_WAS

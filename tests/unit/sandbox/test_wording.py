@@ -7,7 +7,7 @@ import pytest
 
 from course.errors import ContentError, UsageError
 from course.sandbox.runs.running import run
-from course.sandbox.scene.expression import fill, used
+from course.sandbox.scene.expression import evaluate, fill, names, used
 from course.sandbox.scene.loading import FOLDER, choose, compare, guess_of, read_scene, unsaid, values_of
 from course.sandbox.views.story import Experiment
 from course.sandbox.world.world import World
@@ -192,6 +192,19 @@ def test_a_text_that_cannot_be_filled_is_refused(text):
     with pytest.raises(UsageError) as caught:
         fill(text, {"a": 0.4, "b": 30.0})
     assert caught.value.help
+
+
+def test_a_formula_is_a_float_whatever_its_numbers():
+    assert type(evaluate("2 * g", {"g": 3})) is float
+    assert names("max(a, b.x) + pi") == {"a", "b.x"}
+
+
+@pytest.mark.parametrize("text", ["", "'a' * 9", "1+" * 400 + "1", "unknown + 1", "1 / 0", "sqrt(1, 2)"])
+def test_whatever_is_not_arithmetic_is_refused_in_words(text):
+    with pytest.raises(UsageError) as caught:
+        evaluate(text, {"a": 1.0, "x": 1.0})
+    assert "formula" in caught.value.message
+    assert len(caught.value.message) < 200
 
 
 def test_names_of_a_text():

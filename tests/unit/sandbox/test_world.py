@@ -1,14 +1,10 @@
 """One world: fixed steps, hands that act, books that balance."""
 
-from __future__ import annotations
-
-import contextlib
 import gc
 import math
 import random
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -20,9 +16,7 @@ from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.scene.model import Body, Material, Repeat, Scene
 from course.sandbox.world.engine import Ledger
 from course.sandbox.world.world import MAX_BODIES, World
-
-if TYPE_CHECKING:
-    pass
+from tests.unit.sandbox.hands import meddle
 
 
 def scene(*bodies, gravity=(0.0, 0.0), **more):
@@ -156,45 +150,10 @@ def session(name, seed):
     """
     chance = random.Random(f"{name} {seed}")
     world = World(choose(name).scene)
-    left, bottom, right, top = world.scene.view
-    most, size = 0.0, world.settings["step"]
+    most = 0.0
     world.step(chance.randrange(200))
     for _ in range(12):
-        moving = [part.name for part in world.parts if not part.fixed]
-        if not moving:
-            break
-        body = chance.choice(moving)
-        x, y = world.state()[world._space.index[body], :2]
-        move = chance.randrange(9)
-        if move == 0:
-            world.grab(x, y, 0.05)
-        elif move == 1:
-            world.drag(chance.uniform(left, right), chance.uniform(bottom, top))
-        elif move == 2:
-            world.release()
-        elif move == 3:
-            world.throw(x, y, chance.uniform(-3, 3), chance.uniform(-3, 3), 0.01)
-        elif move == 4:
-            key = chance.choice(["gravity", "restitution", "friction", "step", "iterations", "walls", "left"])
-            low, high = {"gravity": (0, 20), "step": (0.3 * size, 2 * size), "iterations": (1, 50)}.get(
-                key, (0, 1)
-            )
-            whole = key in {"walls", "iterations"}
-            with contextlib.suppress(UsageError):  # without wheels, there is no left one
-                world.set(key, chance.randint(low, high) if whole else chance.uniform(low, high))
-        elif move == 5:
-            with contextlib.suppress(UsageError):
-                world.place(body, chance.uniform(left, right), chance.uniform(bottom, top))
-        elif move == 6:
-            world.change(body, chance.choice(["vx", "vy", "spin", "mass"]), chance.uniform(0.5, 3))
-        elif move == 7:
-            with contextlib.suppress(UsageError):
-                world.copy(body)
-        else:
-            act, given = chance.choice(
-                [(world.stop, ()), (world.spawn, ("box", 0, 0)), (world.remove, (body,))]
-            )
-            act(*given)
+        meddle(world, chance)
         for _ in range(chance.randrange(10)):  # no step at all between two moves is a pause
             world.step(8)
             most = max(most, world.receipt.kinetic)
@@ -452,13 +411,6 @@ def test_what_is_no_number_or_out_of_range_is_refused_and_changes_nothing(act):
     with pytest.raises(UsageError):
         act(world)
     assert (world.state_hash(), world.settings) == before
-
-
-def test_restitution_and_friction_of_a_pair_are_products():
-    world = World(scene(puck("a", -1, 1), puck("b", 1, -1), e=1.0), {"restitution": 0.8})
-    world.step(400)
-    event = next(event for event in world.drain_events() if event.kind == "contact")
-    assert event.leave == pytest.approx(0.64 * event.approach)
 
 
 def test_the_order_of_adding_bodies_changes_a_chaotic_outcome_and_not_a_simple_one():

@@ -1,8 +1,8 @@
 """ROS 2 bags: what is written is what another reader finds, and what cannot be written says why."""
 
+import contextlib
 import math
 import sqlite3
-import struct
 import subprocess
 import sys
 
@@ -27,54 +27,39 @@ TRUTH = bags.TruthStream(
 ALL = (IMU, SCAN, ODOMETRY, TRUTH)
 
 
-class Cdr:
-    """Little-endian CDR, read field by field as the specification lays it out."""
+def messages(bag):
+    """By topic what Humble's reader finds in a bag: the type, the time in ns and the message of each."""
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
 
-    def __init__(self, data):
-        assert data[:4] == b"\x00\x01\x00\x00"
-        self.data, self.at = data[4:], 0
-
-    def take(self, code, count=1):
-        size = struct.calcsize(code)
-        self.at += -self.at % size
-        values = struct.unpack_from(f"<{count}{code}", self.data, self.at)
-        self.at += size * count
-        return values if count > 1 else values[0]
-
-    def text(self):
-        length = self.take("I")
-        raw = self.data[self.at : self.at + length]
-        self.at += length
-        return raw[:-1].decode()
-
-    def header(self):
-        return self.take("i"), self.take("I"), self.text()
-
-
-def of(topic, rows):
-    return [row for row in rows if row[0] == topic]
-
-
-def frames(data):
-    """Stamp, parent, child and x, y, heading of each transform of a TFMessage."""
-    cdr, found = Cdr(data), []
-    for _ in range(cdr.take("I")):
-        second, nanosecond, parent = cdr.header()
-        child = cdr.text()
-        x, y, z, qx, qy, qz, qw = cdr.take("d", 7)
-        assert (z, qx, qy) == (0.0, 0.0, 0.0)
-        found.append(((second, nanosecond), parent, child, (x, y, 2 * math.atan2(qz, qw))))
+    found = {}
+    with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
+        for connection, stamp, data in reader.messages():
+            message = reader.deserialize(data, connection.msgtype)
+            found.setdefault(connection.topic, []).append((connection.msgtype, stamp, message))
     return found
 
 
-def sqlite_messages(bag):
-    with sqlite3.connect(bag / f"{bag.name}.db3") as connection:
-        rows = connection.execute(
-            "SELECT topics.name, topics.type, messages.timestamp, messages.data FROM messages"
-            " JOIN topics ON topics.id = messages.topic_id ORDER BY messages.id"
-        ).fetchall()
-    connection.close()
-    return rows
+def nanoseconds(stamp):
+    return 10**9 * stamp.sec + stamp.nanosec
+
+
+def at(t):
+    """A time of a stream, in s, as it is stamped, in ns."""
+    return round(10**9 * (bags.START_S + t))
+
+
+def numbers(message):
+    """The fields of a message, in their order."""
+    return tuple(value for name, value in vars(message).items() if name != "__msgtype__")
+
+
+def pose_of(transform):
+    """x, y and heading."""
+    x, y, z = numbers(transform.translation)
+    qx, qy, qz, qw = numbers(transform.rotation)
+    assert (z, qx, qy) == (0.0, 0.0, 0.0)
+    return x, y, 2 * math.atan2(qz, qw)
 
 
 @pytest.fixture(scope="module")
@@ -84,84 +69,82 @@ def written(tmp_path_factory):
     return bags.write_bag(tmp_path_factory.mktemp("written") / "drive", ALL)
 
 
-def test_an_imu_message_holds_rate_stamp_and_covariances_where_its_definition_says(written):
-    rows = of("/imu/data_raw", sqlite_messages(written))
-    assert [(name, kind, stamp) for name, kind, stamp, _ in rows] == [
-        ("/imu/data_raw", "sensor_msgs/msg/Imu", 10**9 * bags.START_S + stamp)
-        for stamp in (0, 100_000_000, 250_000_000)
-    ]
-    cdr = Cdr(rows[2][3])
-    assert cdr.header() == (bags.START_S, 250_000_000, "base_link")
-    assert cdr.take("d", 4) == (0.0, 0.0, 0.0, 1.0)
-    assert cdr.take("d", 9)[0] == -1.0
-    assert cdr.take("d", 3) == (0.0, 0.0, 0.3)
-    assert cdr.take("d", 9)[::4] == (bags.UNMEASURED, bags.UNMEASURED, 0.04)
-    assert cdr.take("d", 3) == (0.0, 0.0, 0.0)
-    assert cdr.take("d", 9)[0] == -1.0
-    assert cdr.at == len(cdr.data)
+@pytest.fixture(scope="module")
+def found(written):
+    return messages(written)
 
 
-def test_a_scan_message_holds_its_angles_and_infinity_where_nothing_was_hit(written):
-    rows = of("/scan", sqlite_messages(written))
-    cdr = Cdr(rows[0][3])
-    assert cdr.header() == (bags.START_S, 0, "laser")
-    assert cdr.take("f", 7) == pytest.approx((-0.5, 0.5, 0.5, 0.0, 0.1, 0.0, 5.0))
-    assert cdr.take("f", cdr.take("I")) == (1.0, 2.5, math.inf)
-    assert cdr.take("I") == 0
+def test_an_imu_message_holds_rate_stamp_and_covariances_where_its_definition_says(found):
+    rows = found["/imu/data_raw"]
+    assert [(kind, stamp) for kind, stamp, _ in rows] == [("sensor_msgs/msg/Imu", at(t)) for t in T]
+    imu = rows[2][2]
+    assert (nanoseconds(imu.header.stamp), imu.header.frame_id) == (at(0.25), "base_link")
+    assert numbers(imu.orientation) == (0.0, 0.0, 0.0, 1.0)
+    assert imu.orientation_covariance[0] == -1.0
+    assert numbers(imu.angular_velocity) == (0.0, 0.0, 0.3)
+    assert imu.angular_velocity_covariance[::4].tolist() == [bags.UNMEASURED, bags.UNMEASURED, 0.04]
+    assert numbers(imu.linear_acceleration) == (0.0, 0.0, 0.0)
+    assert imu.linear_acceleration_covariance[0] == -1.0
 
 
-def test_an_odometry_message_holds_pose_and_twist_in_their_frames(written):
-    rows = sqlite_messages(written)
-    truth = Cdr(of("/ground_truth", rows)[1][3])
-    assert truth.header() == (bags.START_S, 100_000_000, "map")
-    assert truth.text() == "base_link_true"
-    assert truth.take("d", 3) == (1.1, -0.9, 0.0)
-    cdr = Cdr(of("/odom", rows)[1][3])
-    assert cdr.header() == (bags.START_S, 100_000_000, "odom")
-    assert cdr.text() == "base_link"
-    assert cdr.take("d", 3) == (1.0, -1.0, 0.0)
-    assert cdr.take("d", 4) == pytest.approx((0.0, 0.0, math.sin(1.0), math.cos(1.0)))
-    assert cdr.take("d", 36)[14] == bags.PLANAR
-    assert cdr.take("d", 6) == (0.6, 0.0, 0.0, 0.0, 0.0, 0.1)
+def test_a_scan_message_holds_its_angles_and_infinity_where_nothing_was_hit(found):
+    header, *rest, ranges, intensities = numbers(found["/scan"][0][2])
+    assert (nanoseconds(header.stamp), header.frame_id) == (at(0.0), "laser")
+    assert rest == pytest.approx([-0.5, 0.5, 0.5, 0.0, 0.1, 0.0, 5.0])
+    assert (ranges.tolist(), intensities.tolist()) == ([1.0, 2.5, math.inf], [])
+
+
+def test_an_odometry_message_holds_pose_and_twist_in_their_frames(found):
+    truth, odom = (found[topic][1][2] for topic in ("/ground_truth", "/odom"))
+    for message, frames in ((truth, ("map", "base_link_true")), (odom, ("odom", "base_link"))):
+        assert nanoseconds(message.header.stamp) == at(0.1)
+        assert (message.header.frame_id, message.child_frame_id) == frames
+    assert numbers(truth.pose.pose.position) == (1.1, -0.9, 0.0)
+    assert numbers(odom.pose.pose.position) == (1.0, -1.0, 0.0)
+    assert numbers(odom.pose.pose.orientation) == pytest.approx((0.0, 0.0, math.sin(1.0), math.cos(1.0)))
+    assert odom.pose.covariance[14] == bags.PLANAR
+    assert numbers(odom.twist.twist.linear) == (0.6, 0.0, 0.0)
+    assert numbers(odom.twist.twist.angular) == (0.0, 0.0, 0.1)
 
 
 def test_a_bag_holds_its_messages_in_order_of_time(written):
-    stamps = [stamp for _, _, stamp, _ in sqlite_messages(written)]
+    with contextlib.closing(sqlite3.connect(written / "drive.db3")) as connection:
+        stamps = connection.execute("SELECT timestamp FROM messages ORDER BY id").fetchall()
     assert stamps == sorted(stamps)
     assert len(stamps) == 11 + 3 + 1 + 6  # the streams, the clock, a frame that stands and two that move
 
 
-def test_the_clock_runs_from_after_zero_through_every_stamp(written):
-    rows = sqlite_messages(written)
-    clock = [
-        (stamp, Cdr(data)) for _, kind, stamp, data in of("/clock", rows) if kind == "rosgraph_msgs/msg/Clock"
-    ]
-    assert [stamp for stamp, _ in clock] == sorted({stamp for _, _, stamp, _ in rows})
-    assert all(cdr.take("i") * 10**9 + cdr.take("I") == stamp > 0 for stamp, cdr in clock)
+def test_the_clock_runs_from_after_zero_through_every_stamp(found):
+    assert {kind for kind, _, _ in found["/clock"]} == {"rosgraph_msgs/msg/Clock"}
+    stamps = [stamp for _, stamp, _ in found["/clock"]]
+    assert stamps == sorted({stamp for rows in found.values() for _, stamp, _ in rows})
+    assert [nanoseconds(message.clock) for _, _, message in found["/clock"]] == stamps
+    assert stamps[0] > 0
 
 
 @needs_rosbags
 def test_every_scan_finds_its_way_through_the_frames_to_the_map_at_its_own_time(tmp_path):
     scan = bags.ScanStream(T[:2], [[1.0], [1.5]], 0.0, 0.1, 5.0)
-    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [scan, ODOMETRY, TRUTH]))
-    ((_, kind, when, data),) = of("/tf_static", rows)
+    found = messages(bags.write_bag(tmp_path / "drive", [scan, ODOMETRY, TRUTH]))
+    ((kind, when, still),) = found["/tf_static"]
     assert kind == "tf2_msgs/msg/TFMessage"
-    assert when == min(stamp for _, _, stamp, _ in rows)
-    parents = {child: parent for _, parent, child, _ in frames(data)}
+    assert when == min(stamp for rows in found.values() for _, stamp, _ in rows)
+    parents = {one.child_frame_id: one.header.frame_id for one in still.transforms}
     moving = {}
-    for _, _, stamp, message in of("/tf", rows):
-        for (second, nanosecond), parent, child, pose in frames(message):
-            assert second * 10**9 + nanosecond == stamp
+    for _, stamp, message in found["/tf"]:
+        for one in message.transforms:
+            parent, child = one.header.frame_id, one.child_frame_id
+            assert nanoseconds(one.header.stamp) == stamp
             assert parents.setdefault(child, parent) == parent, "a frame has one parent"
-            moving[child, stamp] = pose
-    for _, _, stamp, message in of("/scan", rows):
-        frame = Cdr(message).header()[2]
+            moving[child, stamp] = pose_of(one.transform)
+    for _, stamp, message in found["/scan"]:
+        frame = message.header.frame_id
         assert (frame, stamp) in moving
         while frame in parents:
             frame = parents[frame]
         assert frame == "map"
-    assert moving["base_link", 10**9 * bags.START_S + 100_000_000] == pytest.approx((1.0, -1.0, 2.0))
-    assert moving["base_link_true", 10**9 * bags.START_S + 100_000_000] == pytest.approx((1.1, -0.9, 2.1))
+    assert moving["base_link", at(0.1)] == pytest.approx((1.0, -1.0, 2.0))
+    assert moving["base_link_true", at(0.1)] == pytest.approx((1.1, -0.9, 2.1))
 
 
 def test_the_metadata_are_of_a_version_that_humble_reads_and_keep_static_frames_for_who_comes_later(written):
@@ -197,7 +180,7 @@ def test_the_view_for_rviz_shows_topics_of_the_bag_in_a_frame_of_the_bag(tmp_pat
     view = YAML(typ="safe").load((bag / bags.VIEW).read_text())["Visualization Manager"]
     assert view["Global Options"]["Fixed Frame"] == frame
     shown = {display["Topic"]["Value"] for display in view["Displays"] if "Topic" in display}
-    assert shown == topics <= {name for name, *_ in sqlite_messages(bag)}
+    assert shown == topics <= messages(bag).keys()
 
 
 def test_the_same_streams_under_the_same_name_are_the_same_bytes(written, tmp_path):

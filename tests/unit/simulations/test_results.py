@@ -1,4 +1,4 @@
-"""Every number that the simulations are known for, and findings that stay true when something is set."""
+"""Every number that the simulations are known for; findings and figures that stay true whatever is set."""
 
 import functools
 import math
@@ -6,7 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from course.simulations.base import Row, run
+from course.errors import InternalError
+from course.figures import experiments
+from course.figures.style import METHODS, house_style
+from course.simulations.base import Result, Row, run
 from course.simulations.registry import SIMULATIONS, get
 
 LONGEST_HEADLINE = 74
@@ -132,6 +135,11 @@ ALL = slice(None)
         ("contact-models", slice(4), {"rel": 1e-6}),
         ("contact-models stiffness=1e6 erp=0.8", slice(1, 2), {"abs": 1e-9}),
         ("environment", slice(3, 6), {"rel": 1e-9}),
+        ("collision restitution=0.5 mass1=3", ALL, {"abs": 1e-9}),
+        ("collision speed2=1", ALL, {"abs": 1e-9}),
+        ("collision restitution=0", ALL, {"abs": 1e-9}),
+        ("collision speed1=-1", ALL, {"abs": 1e-9}),
+        ("collision mass2=1000", ALL, {"abs": 1e-9}),
     ],
 )
 def test_what_is_measured_agrees_with_theory(line, rows, within):
@@ -162,20 +170,6 @@ def test_air_is_missing_from_the_model_whatever_the_step():
 def test_the_pair_touches_at_2_25_s_one_metre_apart_and_ends_at_six():
     values = [row.simulated for row in result("collision").rows]
     assert values == pytest.approx([2.25, 1, -2, 2, -6, 6, 0, 4], abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    "settings", ["restitution=0.5 mass1=3", "speed2=1", "restitution=0", "speed1=-1", "mass2=1000"]
-)
-def test_collisions_of_every_kind_agree_with_theory(settings):
-    for row in result(f"collision {settings}").rows:
-        assert row.simulated == pytest.approx(row.theory, abs=1e-9, nan_ok=True), row
-
-
-def test_the_two_eulers_are_told_apart():
-    out = result("integrators")
-    assert abs(out.rows[0].error or 0) == pytest.approx(0.0890, abs=5e-5)
-    assert abs(out.rows[1].error or 0) == pytest.approx(0.00553, abs=5e-6)
 
 
 @pytest.mark.parametrize(
@@ -302,3 +296,98 @@ def test_the_headline_says_what_came_of_it(line, words):
 @pytest.mark.parametrize("line", ["projectile method=explicit_euler", "projectile drag=0.1 speed_x=0"])
 def test_a_headline_does_not_call_on_a_theory_that_does_not_bear_it_out(line):
     assert "as theory says" not in result(line).headline
+
+
+# -- figures ---------------------------------------------------------------------------------------------
+
+
+def figure(line):
+    with house_style():
+        return experiments.draw(result(line))
+
+
+def labels(axes):
+    legend = axes.get_legend()
+    return [text.get_text() for text in legend.get_texts()] if legend else []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "free-fall duration=1",
+        "free-fall duration=0.01",
+        "projectile speed_z=-5",
+        "projectile duration=0.5",
+        "collision radius=0 speed1=-1",
+        "integrators step=1.25 duration=1000",
+        "rotation spin=0 nudge=0.1",
+        "rotation step=0.1 spin=100",
+        "dynamics payload=0.1",
+        "chaos angle1_deg=10 angle2_deg=5 duration=1",
+        "solver-iterations boxes=3 iterations=5",
+        "solver-iterations boxes=20 tolerance=0.5",
+        "substeps work=60 duration=0.5 frame=0.025",
+        "environment step=0.05",
+        "contact-models restitution=0 step=0.05",
+        "contact-models restitution=1 erp=1 height=100 step=0.02",
+    ],
+)
+def test_extreme_settings_still_give_a_figure_with_a_title_that_fits(line):
+    drawn = figure(line)
+    with house_style():
+        drawn.canvas.draw()
+    title = next(text for text in drawn.texts if text.get_text() == drawn.get_suptitle())
+    assert title.get_window_extent().x1 <= drawn.bbox.x1
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["projectile", "collision", "integrators", "rotation", "solver-iterations", "substeps", "contact-models"],
+)
+def test_a_legend_beside_the_axes_stays_on_the_page(name):
+    drawn = figure(name)
+    drawn.canvas.draw()
+    boxes = [axes.get_legend().get_window_extent() for axes in drawn.axes if axes.get_legend()]
+    assert boxes
+    assert all(box.x1 <= drawn.bbox.x1 for box in boxes)
+
+
+def test_the_title_is_the_finding_of_the_run_that_is_drawn():
+    assert figure("collision restitution=0.5").get_suptitle() == (
+        "Contact at 2.25 s conserves momentum and 25 % of the kinetic energy"
+    )
+
+
+def test_balls_are_drawn_in_their_width_and_bounce_where_they_touch():
+    (axes,) = figure("collision").axes
+    left = next(line for line in axes.lines if line.get_label() == "left ball and its width")
+    assert np.max(np.asarray(left.get_ydata())) == pytest.approx(-0.5, abs=0.02)
+    assert "contact at 2.25 s" in labels(axes)
+
+
+def test_errors_of_the_two_eulers_are_drawn_one_each_way():
+    right = figure("free-fall").axes[1]
+    ends = {line.get_color(): float(np.asarray(line.get_ydata())[-1]) for line in right.lines}
+    assert ends[METHODS["explicit_euler"].color] == pytest.approx(0.0981)
+    assert ends[METHODS["semi_implicit_euler"].color] == pytest.approx(-0.0981)
+
+
+def test_stacks_are_labelled_with_the_iterations_they_need():
+    (axes,) = figure("solver-iterations").axes
+    assert labels(axes) == ["2 boxes: 7", "5 boxes: 45", "10 boxes: 178", "20 boxes: 713"]
+
+
+def test_the_times_at_which_two_pendulums_part_are_marked_on_the_curve():
+    lower = figure("chaos duration=12 step=0.01").axes[1]
+    curve = np.asarray(lower.lines[0].get_ydata())
+    t = np.asarray(lower.lines[0].get_xdata())
+    marks = [line for line in lower.lines if line.get_marker() == "o"]
+    assert len(marks) == 2
+    for mark in marks:
+        (when,), (level,) = mark.get_xdata(), mark.get_ydata()
+        assert math.log(np.interp(when, t, curve) / level) == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_simulation_without_a_figure_is_our_fault():
+    with pytest.raises(InternalError, match="has no figure"):
+        experiments.draw(Result((), "", "", (), simulation="nothing"))

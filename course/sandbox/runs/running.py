@@ -13,7 +13,7 @@ from course.sandbox.scene.expression import evaluate
 from course.sandbox.scene.loading import Chosen, Comparison, compare, values_of, with_settings
 from course.sandbox.scene.model import Probe, Scene, layout
 from course.sandbox.scene.rules import matching
-from course.sandbox.world.accounts import MINOR, SAMPLED, Event, Receipt
+from course.sandbox.world.accounts import MINOR, Event, Receipt
 from course.sandbox.world.engine import Block, Floats
 from course.sandbox.world.world import Snapshot, World
 
@@ -164,6 +164,8 @@ class Probes:
 COLUMNS = ("t [s]", "body", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "spin [rad/s]")
 #: Rows of a table at most, so that a long run of a large scene gives a file that can be opened.
 _MOST_ROWS = 200_000
+#: How often momentum is looked at, in simulated s.
+_LOOK = 1 / 60
 
 
 class Run(msgspec.Struct, frozen=True, kw_only=True):
@@ -223,18 +225,20 @@ def run(
     until = chosen.scene.duration if duration is None else duration
     before = world.momentum
     least = most = np.array(before[:2])
-    at_px = SAMPLED.index("px")
+
+    def look() -> None:
+        nonlocal least, most
+        now = world.momentum[:2]
+        least, most = np.minimum(least, now), np.maximum(most, now)
+
+    world.on_tick.append((max(1, round(_LOOK / world.settings["step"])), look))
     events: list[Event] = []
     samples: list[tuple[float, tuple[str, ...], Floats]] = []
     moving = sum(not part.fixed for part in world.parts) or 1
     for t, is_sample, is_frame in _stops(until, every, fps if on_frame else 0.0, also_at):
-        since = world.t
         world.run_until(t)
         events += world.drain_events()
-        # The world keeps a minute of samples, and is asked at least once a second.
-        rows = [row[at_px : at_px + 2] for row in world.samples(since)]
-        momenta = np.array([least, most, *rows, world.momentum[:2]])
-        least, most = momenta.min(axis=0), momenta.max(axis=0)
+        look()
         if is_sample and len(samples) * moving < _MOST_ROWS:
             free = [i for i, part in enumerate(world.parts) if not part.fixed]
             samples.append((world.t, tuple(world.parts[i].name for i in free), world.state()[free]))

@@ -29,6 +29,11 @@ Frame: TypeAlias = NDArray[np.float32]
 
 #: Numbers in front of the bodies of a frame; ``camera.js`` has the same.
 HEAD = 24
+#: What samples hold of them, in s, J, kg m/s and kg m²/s, and where in a frame that is.
+SAMPLED = ("t", "kinetic", "potential", "contacts", "friction", "rods", "residual", "px", "py", "angular")
+_SAMPLED_AT = [2, *range(11, 20)]
+#: Samples of the last so many s are given, and so many of them at most.
+_MINUTE, _MOST_SAMPLES = 60.0, 3600
 #: Of each body: x, y, angle, vx, vy.
 PER_BODY = 5
 #: Between two frames, in simulated s; of a run that is over in a moment, this part of it.
@@ -155,6 +160,17 @@ class Tape:
     def frame_at(self, t: float) -> Frame:
         """Where everything was at this time."""
         return self.frames[self.at(t)]
+
+    def samples(self, after: float = -math.inf, until: float = math.inf) -> Frame:
+        """Energies and momenta later than ``after`` and up to ``until``, in s; a row as ``SAMPLED`` says.
+
+        They go back a minute.
+        """
+        end = bisect_right(self.times, until + 1e-9)
+        begin = bisect_right(self.times, max(after, self.times[max(0, end - 1)] - _MINUTE))
+        kept = self.frames[begin:end]
+        heads = [one[:HEAD] for one in kept[:: len(kept) // _MOST_SAMPLES + 1]]
+        return np.array(heads, dtype="<f4").reshape(-1, HEAD)[:, _SAMPLED_AT]
 
     def path(self, name: str, most: int = 1500) -> Frame:
         """Where a body was and when, (k, 3): t, x, y, in s and m; at most so many places."""

@@ -1,7 +1,7 @@
 """A scene that runs: fixed steps, one stream of events, and an account of energy and momentum.
 
 Views know nothing of the engine. They say how much real time has passed (``advance``), draw ``snapshot()``,
-read ``drain_events()``, ``receipt`` and ``samples()``, and pass on the user's actions. Each action also goes
+read ``drain_events()`` and ``receipt``, and pass on the user's actions. Each action also goes
 to ``on_input``, with the tick before which it happened: all that a replay needs.
 """
 
@@ -249,11 +249,6 @@ class World:
     def momentum(self) -> tuple[float, float, float]:
         """Along x and y in kg m/s, and angular about the origin in kg m²/s."""
         return self._accounts.ledger.momentum(self._space.state())
-
-    def samples(self, after: float = -math.inf) -> list[list[float]]:
-        """Of the last minute, the rows that are later than this time, in s; ``SAMPLED`` names the columns."""
-        self._settle()
-        return self._accounts.samples(after)
 
     def state_hash(self) -> str:
         """Sixteen letters that stand for every bit of every body's state."""

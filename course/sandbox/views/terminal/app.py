@@ -264,9 +264,8 @@ class SandboxApp(FullScreenApp):
         if self.panel.display:
             width, height = self.panel.size
             rule = "│ " if width > 2 else ""
-            then = None if self.stage.at is None else self.stage.frame()
             room = width - len(rule) - 1
-            lines = panel(self.world, self._parameters(), room, height, then) if height else []
+            lines = panel(self.stage, self._parameters(), room, height) if height else []
             lines += [((" ", ""),)] * (height - len(lines))
             self.panel.show([((rule, "dim"), *line) for line in lines])
         text = self.message or self.pointer.status()

@@ -142,17 +142,16 @@ class Allowance:
 
 
 def past(stage: Stage) -> bytes:
-    """The past, for plots in a page that opened later: fifteen seconds, at 60 rows a second.
+    """The past, for plots in a page that opened later: at most 900 rows, 60 a second or more.
 
     3, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
     and py. A first number of 2 says that these rows come after what was sent before.
     """
-    return _rows(3.0, stage.world.samples()[-900:])
+    return _rows(3.0, stage.tape.samples()[-900:])
 
 
-def _rows(kind: float, rows: list[list[float]]) -> bytes:
-    table = np.array(rows, dtype=np.float64).reshape(len(rows), -1)[:, :_PAST]
-    return _packed(np.concatenate([np.array([kind, len(rows), _PAST]), table.ravel()]))
+def _rows(kind: float, rows: Frame) -> bytes:
+    return _packed(np.concatenate([np.array([kind, len(rows), _PAST]), rows[:, :_PAST].ravel()]))
 
 
 def _packed(numbers: Floats | Frame) -> bytes:
@@ -193,7 +192,7 @@ class Page:
         self.allowance = Allowance(now)
         self._texts: deque[str | bytes] = deque()
         self._frames: dict[int, bytes] = {}
-        self._rows: list[list[float]] = []
+        self._rows: list[Frame] = []
         self._news = asyncio.Event()
 
     def tell(self, message: str | bytes) -> None:
@@ -221,9 +220,9 @@ class Page:
         if self._frames:
             return self._frames.pop(next(iter(self._frames)))
         rows, self._rows = self._rows, []
-        return _rows(2.0, rows) if rows else None
+        return _rows(2.0, np.array(rows)) if rows else None
 
-    def add(self, rows: list[list[float]]) -> None:
+    def add(self, rows: Frame) -> None:
         """Rows for the plots, which go out together when the page has time for them."""
         self._rows = [*self._rows, *rows][-_MOST_ROWS:]
         self._news.set()
@@ -497,9 +496,8 @@ class Session:
             self._version = stage.world.version
             self._tell(self._bodies())
         self._tell_marks()
-        rows = stage.world.samples(self._sent) if stage.at is None and not stage.working else []
-        if rows:
-            self._sent = rows[-1][0]
+        if stage.at is None and not stage.working and stage.tape.times[-1] > self._sent:
+            rows, self._sent = stage.tape.samples(self._sent), stage.tape.times[-1]
             for page in self.pages:
                 page.add(rows)
         self._tell_film()

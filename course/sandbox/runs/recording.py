@@ -21,7 +21,7 @@ import msgspec
 
 from course.catalog.reading import Document, LineMap
 from course.errors import ContentError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.sandbox.scene.model import Part, Scene
+from course.sandbox.scene.model import Form, Part, Scene, Vector
 from course.sandbox.scene.rules import check_scene
 from course.sandbox.world.engine import versions
 from course.sandbox.world.world import Snapshot, World
@@ -520,25 +520,15 @@ class Film:
     def _draw_part(self, pen: ImageDraw, part: Part, x: float, y: float, angle: float) -> None:
         c, s = math.cos(angle), math.sin(angle)
         corners = [self._at(x + c * px - s * py, y + s * px + c * py) for px, py in part.outline]
-        match part.shape:
-            case "circle":
-                centre, r = self._at(x, y), part.radius * self._scale
-                box = (centre[0] - r, centre[1] - r, centre[0] + r, centre[1] + r)
-                pen.ellipse(box, fill=part.colour, outline=_INK, width=2)
-                if not part.fixed:  # a mark, so that turning is seen
-                    edge = (centre[0] + r * c, centre[1] - r * s)
-                    pen.line([centre, edge], fill=_INK, width=2)
-            case "segment":
-                pen.line(corners, fill=part.colour, width=max(2, round(2 * part.radius * self._scale)))
-            case "polygon":
-                pen.polygon(corners, fill=part.colour, outline=_INK, width=2)
-                if part.wheels is not None:
-                    for side in (0.5, -0.5):
-                        px, py = self._at(x - s * side * part.wheels.track, y + c * side * part.wheels.track)
-                        dx, dy = 0.06 * self._scale * c, -0.06 * self._scale * s
-                        pen.line([(px - dx, py - dy), (px + dx, py + dy)], fill=_INK, width=8)
-            case _:
-                assert_never(part.shape)
+        centre, r = self._at(x, y), part.radius * self._scale
+        draw_body(pen, part.shape, corners, centre, r, fill=part.colour, outline=_INK, width=2)
+        if part.shape == "circle" and not part.fixed:  # a mark, so that turning is seen
+            pen.line([centre, (centre[0] + r * c, centre[1] - r * s)], fill=_INK, width=2)
+        if part.wheels is not None:
+            for side in (0.5, -0.5):
+                px, py = self._at(x - s * side * part.wheels.track, y + c * side * part.wheels.track)
+                dx, dy = 0.06 * self._scale * c, -0.06 * self._scale * s
+                pen.line([(px - dx, py - dy), (px + dx, py + dy)], fill=_INK, width=8)
 
     def _at(self, x: float, y: float) -> tuple[float, float]:
         """A place in pixels of the large picture; far outside it is cut, which PIL needs."""
@@ -553,6 +543,30 @@ class Film:
         if self._palette is None:
             self._palette = _palette({part.colour for part in parts})
         return picture.quantize(palette=self._palette, dither=Images.Dither.NONE)
+
+
+def draw_body(
+    pen: ImageDraw, shape: Form, corners: Sequence[Vector], centre: Vector, grown: float, **ink: Any
+) -> None:
+    """Draw a body.
+
+    Args:
+        corners, centre: in pixels.
+        grown: how far beyond its corners or its centre it reaches, in pixels.
+        ink: ``fill``, and perhaps ``outline`` and ``width``.
+    """
+    match shape:
+        case "circle":
+            x, y = centre
+            pen.ellipse((x - grown, y - grown, x + grown, y + grown), **ink)
+        case "segment":
+            pen.line(corners, fill=ink["fill"], width=max(2, round(2 * grown)))
+        case "polygon":
+            pen.polygon(corners, **ink)
+            if grown:
+                pen.line([*corners, corners[0]], fill=ink["fill"], width=round(2 * grown))
+        case _:
+            assert_never(shape)
 
 
 def _palette(colours: set[str]) -> Image:

@@ -276,20 +276,23 @@ def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool 
         values[name] = value
     numbers = {name.replace("-", "_"): value for name, value in values.items()}
     for place, formula in scene.sets.items():
-        _set(raw, place, evaluate(formula, numbers))
-    raw["seed"] = seed
-    try:
-        ready = msgspec.convert(raw, Scene)
-    except msgspec.ValidationError as error:
-        raise _misfit(scene, numbers, str(error)) from error
+        value = evaluate(formula, numbers)
+        target, key = slot(raw, place)
+        kind = type(target[key])
+        target[key] = kind(value) if kind in {int, bool} else value  # whole numbers stay whole
+        try:
+            msgspec.convert(raw, Scene)
+        except msgspec.ValidationError as error:
+            allowed = str(error).partition(" - at ")[0].partition("` ")[2] or "of another kind"
+            where = ", ".join(f"{name}={numbers[name]:g}" for name in sorted(names(formula)))
+            raise MisfitError(
+                place,
+                f"With {where}, {place} is {value:g}, and must be {allowed}.",
+                f"Choose other values, or correct its formula, {formula}.",
+            ) from error
+    ready = msgspec.convert(raw | {"seed": seed}, Scene)
     checked_rest = {name: checked(name, value) for name, value in rest.items()}
     return Chosen(scene=ready, parameters=values, settings=checked_rest, path=path, own=own)
-
-
-def _set(raw: dict[str, Any], place: str, value: float) -> None:
-    target, key = slot(raw, place)
-    kind = type(target[key])
-    target[key] = kind(value) if kind in {int, bool} else value  # whole numbers stay whole
 
 
 class MisfitError(UsageError):
@@ -302,25 +305,6 @@ class MisfitError(UsageError):
     def __init__(self, place: str, message: str, help_: str) -> None:
         super().__init__(message, help=help_, code="bad_parameter")
         self.place = place
-
-
-def _misfit(scene: Scene, numbers: Mapping[str, float], error: str) -> MisfitError:
-    """Which of the formulas gave what does not fit: the first that does not by itself."""
-    for place, formula in scene.sets.items():
-        raw: dict[str, Any] = msgspec.to_builtins(scene)
-        value = evaluate(formula, numbers)
-        _set(raw, place, value)
-        try:
-            msgspec.convert(raw, Scene)
-        except msgspec.ValidationError as alone:
-            allowed = str(alone).partition(" - at ")[0].partition("` ")[2] or "of another kind"
-            given = ", ".join(f"{name}={numbers[name]:g}" for name in sorted(names(formula)))
-            return MisfitError(
-                place,
-                f"With {given}, {place} is {value:g}, and must be {allowed}.",
-                f"Choose other values, or correct its formula, {formula}.",
-            )
-    return MisfitError("", f"The parameters do not fit the scene: {error}.", "Choose other values.")
 
 
 # ---

@@ -2,6 +2,7 @@
 
 import math
 import re
+import textwrap
 from collections.abc import Sequence
 from itertools import zip_longest
 
@@ -103,14 +104,7 @@ def bars(values: Floats, width: int, low: float, span: float, height: int = 1) -
 
 def wrapped(text: str, width: int) -> list[str]:
     """A text in lines that fit; a word that does not is cut."""
-    lines: list[str] = [""]
-    for word in clean(text).split(" "):
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
-            lines.append("")
-        lines[-1] += (" " if lines[-1] else "") + word
-        while len(lines[-1]) > width > 0:
-            lines[-1:] = [lines[-1][:width], lines[-1][width:]]
-    return lines
+    return textwrap.wrap(clean(text), width, break_on_hyphens=False) or [""]
 
 
 def head(world: World, t: float, state: str, pace: float, width: int) -> Line:

@@ -84,7 +84,7 @@ class SandboxApp(FullScreenApp):
         Binding("k", "now", show=False),
         Binding("u,ctrl+z", "stage('undo')", show=False),
         Binding("U,ctrl+y", "stage('redo')", show=False),
-        Binding("v", "aim", show=False),
+        Binding("v", "pointer('aim_at')", show=False),
         Binding("y", "near('copy')", show=False),
         Binding("delete,backspace", "near('remove')", show=False),
         Binding("s", "stop", show=False),
@@ -101,8 +101,8 @@ class SandboxApp(FullScreenApp):
         Binding("minus,underscore", "speed(0.5)", show=False),
         Binding("plus,equals_sign", "speed(2.0)", show=False),
         Binding("question_mark,f1", "help", show=False),
-        Binding("c", "spawn('circle')", show=False),
-        Binding("b", "spawn('box')", show=False),
+        Binding("c", "pointer('spawn', 'circle')", show=False),
+        Binding("b", "pointer('spawn', 'box')", show=False),
         Binding("n", "names", show=False),
         Binding("l", "events", show=False),
         Binding("p", "question", show=False),
@@ -452,8 +452,9 @@ class SandboxApp(FullScreenApp):
         self._attempt(lambda: self.stage.act("reset"))
         self.say("From the start.")
 
-    def action_aim(self) -> None:
-        self._attempt(self.pointer.aim_at)
+    def action_pointer(self, what: str, *given: Any) -> None:
+        """What a pointer does by itself, by the name of its method."""
+        self._attempt(lambda: getattr(self.pointer, what)(*given))
 
     def action_near(self, what: str) -> None:
         name = self.pointer.near()
@@ -510,15 +511,9 @@ class SandboxApp(FullScreenApp):
         self._attempt(lambda: self.stage.act("set", key, value))
         self.say(f"{KEYS[key][2]}: {setting(key, value)} ({spec.meaning})")
 
-    def action_spawn(self, shape: str) -> None:
-        self._attempt(lambda: self.pointer.spawn(shape))
-
     def action_take(self) -> None:
         """Grab the body near the keyboard's pointer, or let it go; of the past, go on from here."""
-        if self.stage.at is not None:
-            self._attempt(self.stage.go_on)
-        else:
-            self._attempt(self.pointer.toggle)
+        self._attempt(self.pointer.toggle if self.stage.at is None else self.stage.go_on)
 
     def action_point(self, dx: int, dy: int) -> None:
         """Move the keyboard's pointer by this many cells; drive what has wheels."""

@@ -257,33 +257,24 @@ class Session:
         clock: Callable[[], float] = perf_counter,
     ) -> None:
         self.desk = desk or Desk()
-        self.gallery = stage is None
-        self.stage = stage or self.desk.stage(scenes()[0].id)
-        self.stage.world.paused = self.gallery
-        if stage is not None:
-            self.desk.opens(stage)
         self.pages: list[Page] = []
         self._clock = clock
-        self._holder: Page | None = None
         self._wake = asyncio.Event()
-        self._seen: tuple[Any, ...] = ()
         self._told: dict[str, Any] = {}
-        self._version = self._cast_of_ghost = -1
-        self._anew = self.stage.anew
-        self._sent = -math.inf
-        self._marked = 0
-        self._ghost = False
         self._cards: dict[str, tuple[str, bytes]] = {}
         self._wanted: deque[tuple[Page, str]] = deque()
         self._film: tuple[Page, Filming] | None = None
+        self._put_on(stage or self.desk.stage(scenes()[0].id), gallery=stage is None)
+        self.stage.world.paused = self.gallery
 
-    def _put_on(self, stage: Stage) -> None:
+    def _put_on(self, stage: Stage, *, gallery: bool = False) -> None:
         """Play this from now on, in place."""
-        self._holder = None
-        self.gallery = False
-        self.stage = stage
-        self.desk.opens(stage)
-        self._ghost, self._cast_of_ghost, self._version, self._seen = False, -1, stage.world.version, ()
+        self.stage, self.gallery = stage, gallery
+        if not gallery:
+            self.desk.opens(stage)
+        self._holder: Page | None = None
+        self._seen: tuple[Any, ...] = ()
+        self._ghost, self._cast_of_ghost, self._version = False, -1, stage.world.version
         self._anew, self._sent, self._marked = stage.anew, stage.world.t, len(stage.tape.marks)
         for page in self.pages:
             self._introduce(page)
@@ -433,7 +424,7 @@ class Session:
             cast, places, joints = preview(choose(name))
             head = np.array([_CARD, len(places), len(cast), joints.shape[1]])
             numbers = np.concatenate([head, places.ravel(), joints.ravel()])
-            card = {"type": "card", "id": name, "bodies": [_body(part) for part in cast]}
+            card = {"type": "card", "id": name, "bodies": cast}
             self._cards[name] = _json(card), _packed(numbers)
         if page in self.pages:
             text, data = self._cards[name]
@@ -593,7 +584,7 @@ class Session:
             "type": "bodies",
             "world": number,
             "version": self.stage.world.version if version is None else version,
-            "bodies": [_body(part) for part in (self.stage.world.parts if parts is None else parts)],
+            "bodies": self.stage.world.parts if parts is None else parts,
         }
 
     def _introduction(self) -> dict[str, Any]:
@@ -624,21 +615,6 @@ class Session:
             "events": stage.narrator.told(),
             "status": self._status(),
         }
-
-
-def _body(part: Part) -> dict[str, Any]:
-    return {
-        "name": part.name,
-        "shape": part.shape,
-        "outline": part.outline,
-        "radius": part.radius,
-        "fixed": part.fixed,
-        "colour": part.colour,
-        "mass": part.mass,
-        "restitution": part.restitution,
-        "friction": part.friction,
-        "track": part.wheels.track if part.wheels else 0.0,
-    }
 
 
 def _json(message: dict[str, Any]) -> str:

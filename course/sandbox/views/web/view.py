@@ -109,15 +109,20 @@ def _listener(port: int) -> socket.socket:
     Raises:
         UsageError: the port is taken, or is none.
     """
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
-        return socket.create_server((_LOOPBACK, port), backlog=64)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind((_LOOPBACK, port))
+        listener.listen(64)
     except (OSError, OverflowError) as error:
+        listener.close()
         why = getattr(error, "strerror", None) or "ports are numbers from 0 to 65535"
         raise UsageError(
             f"Port {port} cannot be used: {why}.",
             help="Leave --port out and a free one is taken.",
             code="bad_port",
         ) from error
+    return listener
 
 
 # ---

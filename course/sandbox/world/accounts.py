@@ -377,14 +377,8 @@ class Accounts:
         self._held.clear()
         self.ledger.sums, self.base = sums, self.space.state()
 
-    def gave(self) -> None:
-        """Something was changed from outside since ``base``: book the energy it brought as given."""
-        had = self._energy()
-        self.base = self.space.state()
-        self.ledger.given += self._energy() - had
-
     def recast(self, gravity: tuple[float, float]) -> None:
-        """Bodies came or went, or gravity changed: book the energy it brought as given."""
+        """Bodies came, went or were changed since ``base``, or gravity was: book what it brought as given."""
         had = self._energy()
         self.ledger.adopt(self.space.parts, gravity)
         self._ties = self.space.ties()

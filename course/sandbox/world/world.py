@@ -386,7 +386,7 @@ class World:
         self._input("throw", x, y, vx, vy, reach)
         self._settle()
         self._space.body(name).velocity = vx, vy
-        self._accounts.gave()
+        self._accounts.recast(self._gravity())
         self._say(f"{name} is thrown at {math.hypot(vx, vy):.2f} m/s", name)
         return name
 
@@ -444,7 +444,7 @@ class World:
         if not self._space.place(name, x, y):
             return False
         self._input("place", name, x, y)
-        self._accounts.gave()
+        self._accounts.recast(self._gravity())
         self._say(f"{name} is put elsewhere", name)
         return True
 
@@ -455,7 +455,7 @@ class World:
         self._input("aim", name, vx, vy)
         self._settle()
         self._space.body(name).velocity = vx, vy
-        self._accounts.gave()
+        self._accounts.recast(self._gravity())
         self._say(f"{name} now moves at {math.hypot(vx, vy):.2f} m/s", name)
 
     def change(self, name: str, key: str, value: float) -> None:
@@ -523,7 +523,7 @@ class World:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
         if self._wheeled:
             self.settings |= {"left": 0.0, "right": 0.0}
-        self._accounts.gave()
+        self._accounts.recast(self._gravity())
         self._say("everything is stopped")
 
     def number_of(self, name: str, key: str) -> float:

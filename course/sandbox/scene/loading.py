@@ -212,8 +212,13 @@ def _check_formulas(document: Document[Scene]) -> None:
     if scene.prediction is not None:
         texts |= {("prediction", key): getattr(scene.prediction, key) for key in ("question", "why")}
         texts[_THEORY] = f"{{{scene.prediction.theory}}}"
-    asked = [text for where, text in texts.items() if where != _THEORY]
-    named = {name.rpartition(".")[2] for text in asked for name in used(text)}
+    named: set[str] = set()
+    for where, text in texts.items():
+        try:
+            names_in = used(text)
+        except UsageError as error:
+            document.fail(where, error.message, fix=error.help)
+        named |= {name.rpartition(".")[2] for name in names_in} if where != _THEORY else set()
     for settings in _ends(scene, named):
         try:
             chosen = _put_in(scene, dict(settings), document.path)

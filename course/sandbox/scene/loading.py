@@ -207,7 +207,7 @@ def _check_formulas(document: Document[Scene]) -> None:
     texts: dict[tuple[str | int, ...], str] = {
         ("probe", i, "time"): f"{{{probe.time}}}"
         for i, probe in enumerate(scene.probe)
-        if isinstance(probe.time, str)
+        if probe.time is not None
     }
     if scene.prediction is not None:
         texts |= {("prediction", key): getattr(scene.prediction, key) for key in ("question", "why")}
@@ -239,9 +239,8 @@ def _check_formulas(document: Document[Scene]) -> None:
                 there = "".join(f" at {name}={value:g}" for name, value in settings.items())
                 document.fail(where, f"{error.message.rstrip('.')}{there}.", fix=error.help)
             if time is not None and not 0.0 <= time <= scene.duration:
-                document.fail(
-                    where, f"that is {time:g} s, which no run sees.", fix="Make it 0 to `duration`."
-                )
+                problem = f"that is {time:g} s, which no run sees."
+                document.fail(where, problem, fix="Make it 0 to `duration`, or that longer.")
 
 
 def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:

@@ -321,8 +321,6 @@ def _check_probe(document: Document[Scene], i: int, probe: Probe, bodies: int) -
     where = ("probe", i)
     if (probe.when == "at") != (probe.time is not None):
         document.fail(where, 'a probe needs `time` exactly when `when` is "at".', fix="Add it, or remove it.")
-    if isinstance(probe.time, float) and probe.time > document.value.duration:
-        document.fail((*where, "time"), "that is after the run has ended.", fix="Make `duration` longer.")
     if (probe.quantity == "count") != (probe.region is not None):
         document.fail(
             where, "a probe needs `region` exactly when it is a count.", fix="Add it, or remove it."

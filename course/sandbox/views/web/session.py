@@ -6,7 +6,6 @@ The state lives here, so a page can be reloaded at any time. Time passes only wh
 import asyncio
 import contextlib
 import functools
-import math
 import operator
 from collections import deque
 from collections.abc import Callable
@@ -329,8 +328,6 @@ class Session:
     # -- requests --------------------------------------------------------------------------------
 
     def _do(self, page: Page, what: str, given: tuple[Any, ...]) -> None:
-        if any(isinstance(one, float) and not math.isfinite(one) for one in given):
-            raise UsageError("A finite number, please.", code="bad_parameter")
         own = getattr(self, f"_do_{what}", None)
         if own is not None:
             own(page, *given)

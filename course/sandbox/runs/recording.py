@@ -96,6 +96,8 @@ class Recording:
     """
 
     def __init__(self, world: World, every: int = EVERY, before: Recording | None = None) -> None:
+        if world.ticks and before is None:
+            raise UsageError("A recording has to begin before the first step.")
         self._world = world
         self.head: Head = (
             before.head

@@ -44,7 +44,8 @@ class Probes:
         state = world.state()
         for probe in self._scene.probe:
             self._start[probe.name] = self._value(probe, state)
-            self._take(probe, self._start[probe.name])
+            if probe.when in {"start", "max", "min"}:
+                self._found[probe.name] = self._start[probe.name]
         world.on_block.append(self._watch)
 
     def read(self, events: Sequence[Event]) -> dict[str, float]:
@@ -74,12 +75,8 @@ class Probes:
             if probe.quantity == "contacts":
                 return float(sum(not event.minor for event in mine)) * probe.scale
             return mine[0].t * probe.scale if mine else math.nan
-        if probe.when == "end":
-            value = self._value(probe, state)
-        elif probe.when == "start":
-            value = self._start[probe.name]
-        else:
-            value = self._found.get(probe.name, math.nan)
+        ends = probe.when == "end"
+        value = self._value(probe, state) if ends else self._found.get(probe.name, math.nan)
         return (value - self._start[probe.name] * probe.change) * probe.scale
 
     def _watch(self, block: Block) -> None:
@@ -88,8 +85,9 @@ class Probes:
             self._times = self._moments()
         for probe in self._scene.probe:
             if probe.when in {"max", "min"}:
+                best = max if probe.when == "max" else min
                 for state in block.states:
-                    self._take(probe, self._value(probe, state))
+                    self._found[probe.name] = best(self._found[probe.name], self._value(probe, state))
             elif probe.when == "at" and probe.name not in self._found:
                 # The first step that ends there or later; times are exact multiples, but for rounding.
                 rows = np.flatnonzero(block.times >= self._times[probe.name] - 1e-9)
@@ -120,11 +118,6 @@ class Probes:
             return False
         mine, pairs = self._of[probe.name], ((event.a, event.b), (event.b, event.a))
         return any(one in mine and probe.other in {None, other} for one, other in pairs)
-
-    def _take(self, probe: Probe, value: float) -> None:
-        if probe.when in {"max", "min"}:
-            best = max if probe.when == "max" else min
-            self._found[probe.name] = best(self._found.get(probe.name, value), value)
 
     def _value(self, probe: Probe, state: Floats) -> float:
         """The quantity in one state; "nan" if none of its bodies is there."""

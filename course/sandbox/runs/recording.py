@@ -87,7 +87,7 @@ class Recording:
     Args:
         world: before its first step.
         every: steps between two hashes.
-        before: what led to the world, if it stands in for another one: its recording is gone on with.
+        head: that of the recording that is gone on with, if the world stands in for another one.
 
     Attributes:
         head: the scene and the settings that it began with.
@@ -95,20 +95,13 @@ class Recording:
             how long they were.
     """
 
-    def __init__(self, world: World, every: int = EVERY, before: Recording | None = None) -> None:
-        if world.ticks and before is None:
+    def __init__(self, world: World, every: int = EVERY, head: Head | None = None) -> None:
+        if world.ticks and head is None:
             raise UsageError("A recording has to begin before the first step.")
         self._world = world
-        self.head: Head = (
-            before.head
-            if before is not None
-            else Head(
-                format=FORMAT,
-                scene=world.scene,
-                settings=dict(world.settings),
-                every=every,
-                versions=_versions(),
-            )
+        settings = dict(world.settings)
+        self.head = head or Head(
+            format=FORMAT, scene=world.scene, settings=settings, every=every, versions=_versions()
         )
         self.inputs: list[Input] = []
         self.hashes: list[Hash] = []
@@ -164,7 +157,7 @@ class Recording:
         world = World(self.head.scene, settings)
         began = self.inputs[first - 1].tick if first else 0
         world.ticks, world.version = began, version
-        made = Recording(world, self.head.every, before=self)
+        made = Recording(world, head=self.head)
         made.inputs = self.inputs[:first]
         made.hashes = [one for one in self.hashes if one.tick <= began]
         return world, made, self.inputs[first:count]

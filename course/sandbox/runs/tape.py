@@ -79,20 +79,14 @@ def shot_of(kept: Frame) -> Snapshot:
 
 def account_of(kept: Frame, start: float) -> tuple[Receipt, tuple[float, float, float]]:
     """What a frame says of energy and momentum; ``start`` is the run's energy at time 0, in J."""
-    kinetic, potential, contacts, friction, rods, residual, px, py, angular = kept[11:20].tolist()
+    sample = dict(zip(SAMPLED, kept[_SAMPLED_AT].tolist(), strict=True))
+    px, py, angular = (sample.pop(name) for name in ("px", "py", "angular"))
+    del sample["t"]
     given = float(kept[22]) - start
-    receipt = Receipt(
-        start=start,
-        given=given if abs(given) > 1e-6 * abs(start) else 0.0,  # the frame's numbers have seven digits
-        kinetic=kinetic,
-        potential=potential,
-        contacts=contacts,
-        friction=friction,
-        rods=rods,
-        residual=residual,
-        integrator=0.0,  # a frame does not have this part of what is missing
-    )
-    return receipt, (px, py, angular)
+    if abs(given) <= 1e-6 * abs(start):  # the frame's numbers have seven digits
+        given = 0.0
+    # A frame does not have the integrator's part of what is missing.
+    return Receipt(start=start, given=given, integrator=0.0, **sample), (px, py, angular)
 
 
 class Tape:

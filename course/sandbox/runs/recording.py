@@ -485,10 +485,6 @@ class Film:
         self.draw(parts, snapshot).save(data, format="PNG")
         return data.getvalue()
 
-    def made(self, kind: str, fps: float) -> bytes:
-        """The film as "gif" or "mp4"."""
-        return self.gif(fps) if kind == "gif" else self.mp4(fps)
-
     def room(self, kind: str) -> int:
         """Frames that fit into a film; PIL has all of a GIF in memory at once."""
         width, height = self.size

@@ -205,7 +205,7 @@ class Tape:
             reel.take(self.casts[int(one[1])], shot_of(one))
             if not told((number + 1 - first) / (count + 1 - first)):
                 raise UsageError("The film was stopped.", code="stopped")
-        return reel.made(kind, FILM_FPS)
+        return reel.gif(FILM_FPS) if kind == "gif" else reel.mp4(FILM_FPS)
 
     def mark(self, t: float) -> None:
         """A contact, if it is far enough from the last one to be a mark of its own."""

@@ -176,10 +176,11 @@ class Picture:
 
     def _draw_bodies(self, pen: ImageDraw.ImageDraw, shot: Snapshot, *, fixed: bool) -> None:
         scale, places = _FINE * self.camera.scale, self._fine(shot.x, shot.y)
+        angles = np.nan_to_num(shot.angle).tolist()
         for row, part in enumerate(self.parts):
             if part.fixed is not fixed:
                 continue
-            (x, y), angle = places[row], float(shot.angle[row])
+            (x, y), angle = places[row], angles[row]
             c, s = scale * math.cos(angle), scale * math.sin(angle)
             corners = [(x + c * px - s * py, y - s * px - c * py) for px, py in part.outline]
             draw_body(pen, part.shape, corners, (x, y), self._grown[row], fill=self._inks[1 + row])

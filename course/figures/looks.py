@@ -7,7 +7,6 @@ business; what is written in it is kept as text.
 import inspect
 import traceback
 from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib import import_module
 from io import BytesIO
 from pathlib import Path
@@ -17,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image, ImageFilter
 
+from course.errors import ContentError
 from course.figures.registry import FIGURES, build
 from course.figures.style import WIDTH_IN, house_style
 
@@ -28,18 +28,8 @@ TOLERANCE = 8.0
 _LEAST_WORDS = 6
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """Something wrong with a figure, and the place to look at."""
-
-    file: Path
-    line: int | None
-    problem: str
-    fix: str
-
-
-def faults(figure_id: str, kept: Path) -> Iterator[Fault]:
-    """Everything wrong with a figure.
+def faults(figure_id: str, kept: Path) -> Iterator[ContentError]:
+    """Everything wrong with a figure, each with the place to look at.
 
     Args:
         kept: the folder with the pictures and texts to compare with.
@@ -57,15 +47,15 @@ def faults(figure_id: str, kept: Path) -> Iterator[Fault]:
         own = [frame for frame in frames if Path(frame.filename).parent == Path(__file__).parent]
         own = [frame for frame in own if Path(frame.filename).name not in {"looks.py", "registry.py"}]
         at = own[-1] if own else None
-        yield Fault(
+        yield ContentError(
             Path(at.filename) if at else file,
             at.lineno if at else None,
             f"figure {figure_id} cannot be drawn: {type(error).__name__}: {error}.",
-            "Correct the builder, or its entry in course/figures/registry.py.",
+            help="Correct the builder, or its entry in course/figures/registry.py.",
         )
         return
     for problem, fix in (*_unreadable(figure), *_changed(figure_id, figure, kept)):
-        yield Fault(file, line, f"figure {figure_id} {problem}", fix)
+        yield ContentError(file, line, f"figure {figure_id} {problem}", help=fix)
 
 
 def picture_and_words(figure_id: str) -> tuple[bytes, bytes]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from course.errors import NotFoundError, UsageError
+from course.simulations.registry import SIMULATIONS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,17 +25,7 @@ FIGURES: dict[str, tuple[str, str]] = {
     "integrators-energy": ("integrators", "energy_error"),
     "integrators-order": ("integrators", "error_against_step"),
     "integrators-stability": ("integrators", "stability"),
-    "sim-chaos": ("experiments", "chaos"),
-    "sim-collision": ("experiments", "collision"),
-    "sim-contact-models": ("experiments", "contact_models"),
-    "sim-dynamics": ("experiments", "dynamics"),
-    "sim-environment": ("experiments", "environment"),
-    "sim-free-fall": ("experiments", "free_fall"),
-    "sim-integrators": ("experiments", "integrators"),
-    "sim-projectile": ("experiments", "projectile"),
-    "sim-rotation": ("experiments", "rotation"),
-    "sim-solver-iterations": ("experiments", "solver_iterations"),
-    "sim-substeps": ("experiments", "substeps"),
+    **{f"sim-{name}": ("experiments", name.replace("-", "_")) for name in SIMULATIONS},
     "accuracy-chaos": ("sim_to_real", "chaos"),
     "accuracy-small-steps": ("sim_to_real", "small_steps"),
     "accuracy-substeps": ("sim_to_real", "substeps"),

@@ -10,7 +10,7 @@ import threading
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Any, Literal
 
 from course.printable import beginning
@@ -159,13 +159,20 @@ _WORDS = 60
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """A reader's prediction; ``text`` is empty if they skipped it.
+    """A reader's prediction.
 
     Attributes:
-        judged: how the reader says it did, once the answer was open.
+        lesson: where it was asked.
+        key: of the question, as ``Question.key``.
+        text: what they said; empty if they skipped it.
+        at: when, in UTC.
+        judged: how it did, by the reader's own word once the answer was open; None if that was not said.
     """
 
+    lesson: str
+    key: str
     text: str
+    at: datetime
     judged: Judgement | None = None
 
     @property
@@ -265,7 +272,10 @@ class InProgress:
         self.place = Place()
         self.furthest = -1
         self.read = False
-        self._predictions: dict[str, Prediction] = {}
+        # What was recorded of a longer lesson, which this one was part of, is of this one now.
+        said = [one for one in events if one.kind == "prediction"]
+        mine = predictions_of(replace(one, subject=script.lesson.id) for one in said)
+        self._predictions = {one.key: one for one in mine}
         self._cells: dict[str, CellState] = {}
         for event in events:
             self._take(event)
@@ -295,8 +305,8 @@ class InProgress:
     def predict(self, question: Question, text: str) -> None:
         """Keep a prediction; an empty text is a skip. The first prediction stays."""
         if question.key not in self._predictions:
-            said = text.strip()[:_KEPT].encode("utf-8", "replace").decode()
-            self._predictions[question.key] = Prediction(said)
+            said, lesson = text.strip()[:_KEPT].encode("utf-8", "replace").decode(), self.script.lesson.id
+            self._predictions[question.key] = Prediction(lesson, question.key, said, datetime.now(UTC))
             self._note("prediction", {"key": question.key, "number": question.number, "text": said})
 
     def judge(self, question: Question, judged: Judgement) -> None:
@@ -356,12 +366,6 @@ class InProgress:
                 self.furthest = len(self.script.blocks) - 1
         elif event.kind == "bookmark":
             self._take_bookmark(data)
-        elif event.kind == "prediction" and key in {one.key for one in self.script.questions}:
-            said = self._predictions.get(key)
-            if said is None:
-                self._predictions[key] = Prediction(str(data.get("text", "")))
-            elif data.get("judged") in JUDGEMENTS:
-                self._predictions[key] = replace(said, judged=data["judged"])
         elif event.kind == "cell":
             cell = next((one for one in self.script.cells if one.key == key), None)
             if cell is not None:
@@ -399,47 +403,28 @@ class InProgress:
 
 
 # ---
-# A student's predictions in all lessons, and how good they were: read from the reader's record.
+# A student's predictions, in one lesson or in all, and how good they were: read from the reader's record.
 
 
-@dataclass(frozen=True, slots=True)
-class RecordedPrediction:
-    """One prediction.
-
-    Attributes:
-        lesson: where it was asked.
-        key: of the question, as ``Question.key``.
-        text: the prediction; empty if it was skipped.
-        at: when, in UTC.
-        judged: how it did, by its author's word once the answer was open; None if that was not said.
-    """
-
-    lesson: str
-    key: str
-    text: str
-    at: datetime
-    judged: Judgement | None = None
-
-
-def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
+def predictions_of(events: Iterable[Event]) -> tuple[Prediction, ...]:
     """The predictions that events of kind "prediction" tell of, in the order they were made.
 
-    The first prediction for a question stays, as in the reader; the last judgement counts.
+    The first prediction for a question stays; the last judgement counts.
     """
-    found: dict[tuple[str, str], RecordedPrediction] = {}
+    found: dict[tuple[str, str], Prediction] = {}
     for event in events:
         if event.kind != "prediction":
             continue
         data, place = event.data, (event.subject, str(event.data.get("key", "")))
         said, judged = found.get(place), data.get("judged")
         if said is None:
-            found[place] = RecordedPrediction(*place, str(data.get("text", "")), event.at)
+            found[place] = Prediction(*place, str(data.get("text", "")), event.at)
         elif judged in JUDGEMENTS and said.text:
             found[place] = replace(said, judged=judged)
     return tuple(found.values())
 
 
-def tally(predictions: Iterable[RecordedPrediction]) -> dict[str, int]:
+def tally(predictions: Iterable[Prediction]) -> dict[str, int]:
     """How many of them went which way: ``unjudged`` were made and never judged; ``said`` were not skipped."""
     counts = dict.fromkeys((*JUDGEMENTS, "unjudged", "skipped", "said"), 0)
     for one in predictions:

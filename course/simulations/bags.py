@@ -38,7 +38,7 @@ from __future__ import annotations
 import math
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
@@ -313,12 +313,6 @@ UNMEASURED = 1e6
 #: Variance of what is 0 because the world is flat, m² and rad².
 PLANAR = 1e-9
 
-_TOPICS = {
-    ImuStream: ("/imu/data_raw", "sensor_msgs/msg/Imu"),
-    ScanStream: ("/scan", "sensor_msgs/msg/LaserScan"),
-    OdometryStream: ("/odom", "nav_msgs/msg/Odometry"),
-    TruthStream: ("/ground_truth", "nav_msgs/msg/Odometry"),
-}
 _CLOCK = ("/clock", "rosgraph_msgs/msg/Clock")
 _MOVING = ("/tf", "tf2_msgs/msg/TFMessage")
 _STATIC = ("/tf_static", "tf2_msgs/msg/TFMessage")
@@ -381,8 +375,10 @@ def _write(writer: Any, streams: list[Stream]) -> None:
         (_CLOCK, ((stamp, _new("rosgraph_msgs/Clock", _time(stamp))) for stamp in moments)),
         (_STATIC, _still(streams, moments)),
         (_MOVING, (row for stream, stamps in poses for row in _moving(stream, stamps))),
-        *((_TOPICS[type(s)], zip(stamps, _messages(s, stamps), strict=True)) for s, stamps in stamped),
     ]
+    for stream, stamps in stamped:
+        topic, kind, messages_of = _TOPICS[type(stream)]
+        topics.append(((topic, kind), zip(stamps, messages_of(stream, stamps), strict=True)))
     rows: list[tuple[int, int, Any, str, Any]] = []
     for order, ((topic, kind), messages) in enumerate(topics):
         quality = [_quality(lasting=topic == "/tf_static")]
@@ -411,36 +407,25 @@ def _quality(*, lasting: bool) -> Any:
     )
 
 
-def _frames(transforms: list[Any]) -> Any:
-    return _new("tf2_msgs/TFMessage", transforms)
-
-
 def _transform(stamp: int, frame: str, child: str, x: float, y: float, heading: float) -> Any:
+    """A message that places one frame in another."""
     placed = _new("geometry_msgs/Transform", _vector(x, y, 0.0), _about_z(heading))
-    return _new("geometry_msgs/TransformStamped", _header(stamp, frame), child, placed)
+    stamped = _new("geometry_msgs/TransformStamped", _header(stamp, frame), child, placed)
+    return _new("tf2_msgs/TFMessage", [stamped])
 
 
 def _still(streams: list[Stream], moments: list[int]) -> Iterator[tuple[int, Any]]:
     """The frame of the odometry on that of the truth: both begin where the robot begins."""
     odometry = next((stream for stream in streams if type(stream) is OdometryStream), None)
     if odometry is not None and moments:
-        frame = TruthStream.frame
-        yield moments[0], _frames([_transform(moments[0], frame, odometry.frame, 0.0, 0.0, 0.0)])
+        yield moments[0], _transform(moments[0], TruthStream.frame, odometry.frame, 0.0, 0.0, 0.0)
 
 
 def _moving(stream: OdometryStream, stamps: list[int]) -> Iterator[tuple[int, Any]]:
     """The frame that moves with an odometry, at each of its times."""
     columns = (stream.x.tolist(), stream.y.tolist(), stream.heading.tolist())
     for stamp, *pose in zip(stamps, *columns, strict=True):
-        yield stamp, _frames([_transform(stamp, stream.frame, stream.child_frame, *pose)])
-
-
-def _messages(stream: Stream, stamps: list[int]) -> Iterator[Any]:
-    if isinstance(stream, ImuStream):
-        return _imu_messages(stream, stamps)
-    if isinstance(stream, ScanStream):
-        return _scan_messages(stream, stamps)
-    return _odometry_messages(stream, stamps)
+        yield stamp, _transform(stamp, stream.frame, stream.child_frame, *pose)
 
 
 def _new(kind: str, *values: Any) -> Any:
@@ -515,3 +500,12 @@ def _odometry_messages(stream: OdometryStream, stamps: list[int]) -> Iterator[An
             _new("geometry_msgs/PoseWithCovariance", pose, pose_covariance),
             _new("geometry_msgs/TwistWithCovariance", twist, twist_covariance),
         )
+
+
+#: Of each type of stream: its topic, the type of its messages, and what makes them.
+_TOPICS: dict[type[Stream], tuple[str, str, Callable[[Any, list[int]], Iterator[Any]]]] = {
+    ImuStream: ("/imu/data_raw", "sensor_msgs/msg/Imu", _imu_messages),
+    ScanStream: ("/scan", "sensor_msgs/msg/LaserScan", _scan_messages),
+    OdometryStream: ("/odom", "nav_msgs/msg/Odometry", _odometry_messages),
+    TruthStream: ("/ground_truth", "nav_msgs/msg/Odometry", _odometry_messages),
+}

@@ -1,11 +1,15 @@
 """The list of simulations; each is imported when it is needed."""
 
+from __future__ import annotations
+
 from importlib import import_module
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from course.errors import NotFoundError
 from course.printable import meant
-from course.simulations.base import Simulation
+
+if TYPE_CHECKING:
+    from course.simulations.base import Simulation
 
 #: The four that an introduction begins with, in their order.
 CHAPTER = ("free-fall", "projectile", "collision", "integrators")

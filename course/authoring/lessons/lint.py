@@ -558,7 +558,7 @@ def audit_figures(catalog: Catalog, lessons: Collection[str] | None, findings: F
     for figure_id in figure_ids():
         if lessons is None or figure_id in shown:
             for fault in faults(figure_id, kept):
-                findings.add(fault.file, fault.line, "figure", fault.problem, fault.fix)
+                findings.add(fault.file, fault.line, "figure", fault.problem, fault.help)
         # `course sim run --plot` shows those of the simulations.
         if lessons is None and figure_id not in shown and not figure_id.startswith("sim-"):
             problem = f"no lesson shows figure {figure_id}."

@@ -17,7 +17,7 @@ from course.errors import CourseError
 from course.printable import counted
 from course.progress.history import History, Mistake, Standing
 from course.reading.parts import Script, read_script
-from course.reading.record import RecordedPrediction, predictions_of, tally
+from course.reading.record import Prediction, predictions_of, tally
 from course.scoring.verdict import format_points
 
 #: States of an exercise, as a person reads them.
@@ -341,7 +341,7 @@ class Learning:
         self.mistakes = tuple(self._mistakes(standing.mistakes))
         self.revisit = tuple(self._revisit())
 
-    def _predictions(self, said: Sequence[RecordedPrediction]) -> replies.PredictionsState:
+    def _predictions(self, said: Sequence[Prediction]) -> replies.PredictionsState:
         lessons = [one for one in self._catalog.lesson_ids() if any(each.lesson == one for each in said)]
         days = sorted({_day(one) for one in said})
         each = []
@@ -366,7 +366,7 @@ class Learning:
         except CourseError:
             return None
 
-    def _asked(self, said: RecordedPrediction) -> dict[str, str]:
+    def _asked(self, said: Prediction) -> dict[str, str]:
         """Where it was asked, as "lesson#section", and the question; "" for what is gone."""
         script = self._scripts(said.lesson)
         asked = next((one for one in script.questions if one.key == said.key), None) if script else None
@@ -486,7 +486,7 @@ def _looks_like(exercise: Exercise, mistake: Mistake) -> str:
     return (entry.looks_like if entry else "") or (raised if mistake.diagnosis == "RAISED" else "")
 
 
-def _day(said: RecordedPrediction) -> str:
+def _day(said: Prediction) -> str:
     return said.at.astimezone().strftime("%Y-%m-%d")
 
 

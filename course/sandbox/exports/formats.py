@@ -8,10 +8,10 @@ sets the velocities at the start.
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import assert_never
+from typing import Any, assert_never
 from xml.etree import ElementTree as ET
 
 from course.errors import UsageError
@@ -100,9 +100,7 @@ class Assembly:
             mass, moment: in kg, and in kg m² about each axis.
         """
         link = ET.Element("link", name=name)
-        x, z, pitch = place
-        _text(link, "pose", f"{number(x)} 0 {number(z)} 0 {number(pitch)} 0")
-        _add_inertial(link, mass, (moment,) * 3)
+        _fill(link, {"pose": _pose(*place), "inertial": _inertial(mass, (moment,) * 3)})
         self.light.append(link)
 
     def hold(
@@ -125,14 +123,11 @@ class Assembly:
             speed: at the start, in m/s or rad/s.
         """
         joint = ET.Element("joint", name=name, type=kind)
-        _text(joint, "pose", f"{number(place[0])} 0 {number(place[1])} 0 0 0")
-        _text(joint, "parent", links[0])
-        _text(joint, "child", links[1])
-        turning = ET.SubElement(joint, "axis")
-        _text(turning, "xyz", axis).set("expressed_in", "__model__")
-        limit = ET.SubElement(turning, "limit")
-        _text(limit, "lower", "-1e16")  # SDF's own way to say that there is none
-        _text(limit, "upper", "1e16")
+        none = {"lower": "-1e16", "upper": "1e16"}  # SDF's own way to say that there is no limit
+        turning = {"xyz": axis, "limit": none}
+        _fill(joint, {"pose": _pose(*place), "parent": links[0], "child": links[1], "axis": turning})
+        for xyz in joint.iter("xyz"):
+            xyz.set("expressed_in", "__model__")
         self.joints.append(joint)
         if speed:
             self.speeds[name] = speed
@@ -244,6 +239,13 @@ _NOTE = " Written by `course sandbox export`. A plane in space: x is x, z is up,
 _NOTE_START = (
     f" Velocities at the start are set by {START}, which Gazebo finds by GZ_SIM_SYSTEM_PLUGIN_PATH. "
 )
+_SUN = {
+    "cast_shadows": "true",
+    "pose": "0 -10 10 0 0 0",
+    "diffuse": "0.9 0.9 0.9 1",
+    "specular": "0.2 0.2 0.2 1",
+    "direction": "0.3 0.7 -0.6",
+}
 #: The systems that Gazebo Sim loads when a world names none; a world that names one has to name them all.
 _SYSTEMS = ("physics", "user-commands", "scene-broadcaster")
 
@@ -264,16 +266,15 @@ def sdf(chosen: Chosen) -> bytes:
     world = ET.SubElement(root, "world", name=scene.id)
     # Gazebo Sim takes its engine from a plugin, not from this type, which SDF wants to be there.
     physics = ET.SubElement(world, "physics", name="fixed-step", type="ignored")
-    _text(physics, "max_step_size", number(chosen.present["step"]))
-    _text(physics, "real_time_factor", "1")
+    _fill(physics, {"max_step_size": chosen.present["step"], "real_time_factor": 1})
     for system in _SYSTEMS:
         _plugin(world, system)
-    _text(world, "gravity", _gravity(chosen))
-    _add_light(world)
+    _fill(world, {"gravity": _gravity(chosen)})
+    _fill(ET.SubElement(world, "light", name="sun", type="directional"), _SUN)
     for part in parts:
         if part.fixed:
             model = ET.SubElement(world, "model", name=part.name)
-            _text(model, "static", "true")
+            _fill(model, {"static": "true"})
             _add_link(model, chosen, part)
     for assembly in models:
         _add_assembly(world, chosen, assembly)
@@ -292,97 +293,73 @@ def _plugin(parent: ET.Element, system: str) -> ET.Element:
     return ET.SubElement(parent, "plugin", filename=f"gz-sim-{system}-system", name=name)
 
 
-def _add_light(world: ET.Element) -> None:
-    light = ET.SubElement(world, "light", name="sun", type="directional")
-    for tag, text in (
-        ("cast_shadows", "true"),
-        ("pose", "0 -10 10 0 0 0"),
-        ("diffuse", "0.9 0.9 0.9 1"),
-        ("specular", "0.2 0.2 0.2 1"),
-        ("direction", "0.3 0.7 -0.6"),
-    ):
-        _text(light, tag, text)
-
-
 def _add_assembly(world: ET.Element, chosen: Chosen, assembly: Assembly) -> None:
     """A model whose links stand where their bodies do, the joints that hold them, and their velocities."""
     model = ET.SubElement(world, "model", name=assembly.bodies[0].name)
     if len(assembly.bodies) > 1:
-        _text(model, "self_collide", "true")
+        _fill(model, {"self_collide": "true"})
     model.extend(assembly.light)
     for part in assembly.bodies:
         _add_link(model, chosen, part)
     model.extend(assembly.joints)
     if assembly.speeds:
         plugin = _plugin(model, "python-system-loader")
-        _text(plugin, "module_name", START.removesuffix(".py"))
-        _text(plugin, "joints", " ".join(assembly.speeds))
-        for name, speed in assembly.speeds.items():
-            _text(plugin, name, number(speed))
+        joints = " ".join(assembly.speeds)
+        _fill(plugin, {"module_name": START.removesuffix(".py"), "joints": joints, **assembly.speeds})
 
 
-def _add_inertial(link: ET.Element, mass: float, moments: tuple[float, float, float]) -> None:
-    inertial = ET.SubElement(link, "inertial")
-    _text(inertial, "mass", number(mass))
-    inertia = ET.SubElement(inertial, "inertia")
-    for tag, moment in zip(("ixx", "iyy", "izz"), moments, strict=True):
-        _text(inertia, tag, number(moment))
-    for tag in ("ixy", "ixz", "iyz"):
-        _text(inertia, tag, "0")
+def _fill(parent: ET.Element, content: Mapping[str, Any]) -> None:
+    """Add elements by their tags: with a text, a number, or more elements; a list has several of one tag."""
+    for tag, values in content.items():
+        for value in values if isinstance(values, list) else [values]:
+            element = ET.SubElement(parent, tag)
+            if isinstance(value, Mapping):
+                _fill(element, value)
+            else:
+                element.text = value if isinstance(value, str) else number(value)
 
 
-def _text(parent: ET.Element, tag: str, text: str) -> ET.Element:
-    element = ET.SubElement(parent, tag)
-    element.text = text
-    return element
+def _pose(x: float, z: float, pitch: float = 0.0) -> str:
+    return f"{number(x)} 0 {number(z)} 0 {number(pitch)} 0"
+
+
+def _inertial(mass: float, moments: tuple[float, float, float]) -> dict[str, Any]:
+    inertia = dict(zip(("ixx", "iyy", "izz"), moments, strict=True)) | {"ixy": 0, "ixz": 0, "iyz": 0}
+    return {"mass": mass, "inertia": inertia}
 
 
 def _add_link(model: ET.Element, chosen: Chosen, part: Part) -> None:
     link = ET.SubElement(model, "link", name=part.name)
     # Counter-clockwise, seen with x to the right and z up, is a turn about -y.
-    _text(link, "pose", f"{number(part.x)} 0 {number(part.y)} 0 {number(-part.angle)} 0")
+    _fill(link, {"pose": _pose(part.x, part.y, -part.angle)})
     if not part.fixed:
-        _add_inertial(link, part.mass, moment_3d(part))
+        _fill(link, {"inertial": _inertial(part.mass, moment_3d(part))})
     restitution, friction = surface_of(chosen, part)
-    for kind in ("collision", "visual"):
-        element = ET.SubElement(link, kind, name=f"{part.name}-{kind}")
-        if part.shape == "segment":
-            (ax, ay), (bx, by) = part.outline
-            tilt = math.atan2(bx - ax, by - ay)
-            _text(element, "pose", f"{number((ax + bx) / 2)} 0 {number((ay + by) / 2)} 0 {number(tilt)} 0")
-        elif part.shape == "polygon" and part.size is None:
-            # An outline is drawn in x and y and raised along z; here it has to lie in x and z.
-            _text(element, "pose", f"0 {number(DEPTH)} 0 {number(math.pi / 2)} 0 0")
-        _add_geometry(ET.SubElement(element, "geometry"), part)
-        if kind == "collision":
-            surface = ET.SubElement(element, "surface")
-            _text(ET.SubElement(surface, "bounce"), "restitution_coefficient", number(restitution))
-            ode = ET.SubElement(ET.SubElement(surface, "friction"), "ode")
-            _text(ode, "mu", number(friction))
-            _text(ode, "mu2", number(friction))
-        else:
-            material = ET.SubElement(element, "material")
-            for light in ("ambient", "diffuse"):
-                _text(material, light, _rgba(part.colour))
+    rubbing = {"ode": {"mu": friction, "mu2": friction}}
+    surface = {"bounce": {"restitution_coefficient": restitution}, "friction": rubbing}
+    material = dict.fromkeys(("ambient", "diffuse"), _rgba(part.colour))
+    for kind, more in (("collision", {"surface": surface}), ("visual", {"material": material})):
+        _fill(ET.SubElement(link, kind, name=f"{part.name}-{kind}"), _shape(part) | more)
 
 
-def _add_geometry(geometry: ET.Element, part: Part) -> None:
+def _shape(part: Part) -> dict[str, Any]:
+    """The geometry of a body, and its pose in the body's frame where it is not that frame."""
     match part.shape:
         case "circle":
-            _text(ET.SubElement(geometry, "sphere"), "radius", number(part.radius))
+            return {"geometry": {"sphere": {"radius": part.radius}}}
         case "segment":
             (ax, ay), (bx, by) = part.outline
-            capsule = ET.SubElement(geometry, "capsule")
-            _text(capsule, "radius", number(part.radius))
-            _text(capsule, "length", number(math.hypot(bx - ax, by - ay)))
+            pose = _pose((ax + bx) / 2, (ay + by) / 2, math.atan2(bx - ax, by - ay))
+            capsule = {"radius": part.radius, "length": math.hypot(bx - ax, by - ay)}
+            return {"pose": pose, "geometry": {"capsule": capsule}}
         case "polygon" if part.size is not None:
-            size = f"{number(part.size[0])} {number(2 * DEPTH)} {number(part.size[1])}"
-            _text(ET.SubElement(geometry, "box"), "size", size)
+            size = " ".join(map(number, (part.size[0], 2 * DEPTH, part.size[1])))
+            return {"geometry": {"box": {"size": size}}}
         case "polygon":
-            polyline = ET.SubElement(geometry, "polyline")
-            for x, y in (*part.outline, part.outline[0]):
-                _text(polyline, "point", f"{number(x)} {number(y)}")
-            _text(polyline, "height", number(2 * DEPTH))
+            # An outline is drawn in x and y and raised along z; here it has to lie in x and z.
+            pose = f"0 {number(DEPTH)} 0 {number(math.pi / 2)} 0 0"
+            points = [f"{number(x)} {number(y)}" for x, y in (*part.outline, part.outline[0])]
+            return {"pose": pose, "geometry": {"polyline": {"point": points, "height": 2 * DEPTH}}}
         case _:
             assert_never(part.shape)
 

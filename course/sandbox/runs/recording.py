@@ -21,7 +21,7 @@ import msgspec
 
 from course.catalog.reading import Document, LineMap
 from course.errors import ContentError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.sandbox.scene.model import Part, Scene
+from course.sandbox.scene.model import Form, Part, Scene, Vector
 from course.sandbox.scene.rules import check_scene
 from course.sandbox.world.engine import versions
 from course.sandbox.world.world import Snapshot, World
@@ -87,7 +87,7 @@ class Recording:
     Args:
         world: before its first step.
         every: steps between two hashes.
-        before: what led to the world, if it stands in for another one: its recording is gone on with.
+        head: that of the recording that is gone on with, if the world stands in for another one.
 
     Attributes:
         head: the scene and the settings that it began with.
@@ -95,20 +95,13 @@ class Recording:
             how long they were.
     """
 
-    def __init__(self, world: World, every: int = EVERY, before: Recording | None = None) -> None:
-        if world.ticks and before is None:
+    def __init__(self, world: World, every: int = EVERY, head: Head | None = None) -> None:
+        if world.ticks and head is None:
             raise UsageError("A recording has to begin before the first step.")
         self._world = world
-        self.head: Head = (
-            before.head
-            if before is not None
-            else Head(
-                format=FORMAT,
-                scene=world.scene,
-                settings=dict(world.settings),
-                every=every,
-                versions=_versions(),
-            )
+        settings = dict(world.settings)
+        self.head = head or Head(
+            format=FORMAT, scene=world.scene, settings=settings, every=every, versions=_versions()
         )
         self.inputs: list[Input] = []
         self.hashes: list[Hash] = []
@@ -164,7 +157,7 @@ class Recording:
         world = World(self.head.scene, settings)
         began = self.inputs[first - 1].tick if first else 0
         world.ticks, world.version = began, version
-        made = Recording(world, self.head.every, before=self)
+        made = Recording(world, head=self.head)
         made.inputs = self.inputs[:first]
         made.hashes = [one for one in self.hashes if one.tick <= began]
         return world, made, self.inputs[first:count]
@@ -492,10 +485,6 @@ class Film:
         self.draw(parts, snapshot).save(data, format="PNG")
         return data.getvalue()
 
-    def made(self, kind: str, fps: float) -> bytes:
-        """The film as "gif" or "mp4"."""
-        return self.gif(fps) if kind == "gif" else self.mp4(fps)
-
     def room(self, kind: str) -> int:
         """Frames that fit into a film; PIL has all of a GIF in memory at once."""
         width, height = self.size
@@ -520,25 +509,15 @@ class Film:
     def _draw_part(self, pen: ImageDraw, part: Part, x: float, y: float, angle: float) -> None:
         c, s = math.cos(angle), math.sin(angle)
         corners = [self._at(x + c * px - s * py, y + s * px + c * py) for px, py in part.outline]
-        match part.shape:
-            case "circle":
-                centre, r = self._at(x, y), part.radius * self._scale
-                box = (centre[0] - r, centre[1] - r, centre[0] + r, centre[1] + r)
-                pen.ellipse(box, fill=part.colour, outline=_INK, width=2)
-                if not part.fixed:  # a mark, so that turning is seen
-                    edge = (centre[0] + r * c, centre[1] - r * s)
-                    pen.line([centre, edge], fill=_INK, width=2)
-            case "segment":
-                pen.line(corners, fill=part.colour, width=max(2, round(2 * part.radius * self._scale)))
-            case "polygon":
-                pen.polygon(corners, fill=part.colour, outline=_INK, width=2)
-                if part.wheels is not None:
-                    for side in (0.5, -0.5):
-                        px, py = self._at(x - s * side * part.wheels.track, y + c * side * part.wheels.track)
-                        dx, dy = 0.06 * self._scale * c, -0.06 * self._scale * s
-                        pen.line([(px - dx, py - dy), (px + dx, py + dy)], fill=_INK, width=8)
-            case _:
-                assert_never(part.shape)
+        centre, r = self._at(x, y), part.radius * self._scale
+        draw_body(pen, part.shape, corners, centre, r, fill=part.colour, outline=_INK, width=2)
+        if part.shape == "circle" and not part.fixed:  # a mark, so that turning is seen
+            pen.line([centre, (centre[0] + r * c, centre[1] - r * s)], fill=_INK, width=2)
+        if part.wheels is not None:
+            for side in (0.5, -0.5):
+                px, py = self._at(x - s * side * part.wheels.track, y + c * side * part.wheels.track)
+                dx, dy = 0.06 * self._scale * c, -0.06 * self._scale * s
+                pen.line([(px - dx, py - dy), (px + dx, py + dy)], fill=_INK, width=8)
 
     def _at(self, x: float, y: float) -> tuple[float, float]:
         """A place in pixels of the large picture; far outside it is cut, which PIL needs."""
@@ -553,6 +532,30 @@ class Film:
         if self._palette is None:
             self._palette = _palette({part.colour for part in parts})
         return picture.quantize(palette=self._palette, dither=Images.Dither.NONE)
+
+
+def draw_body(
+    pen: ImageDraw, shape: Form, corners: Sequence[Vector], centre: Vector, grown: float, **ink: Any
+) -> None:
+    """Draw a body.
+
+    Args:
+        corners, centre: in pixels.
+        grown: how far beyond its corners or its centre it reaches, in pixels.
+        ink: ``fill``, and perhaps ``outline`` and ``width``.
+    """
+    match shape:
+        case "circle":
+            x, y = centre
+            pen.ellipse((x - grown, y - grown, x + grown, y + grown), **ink)
+        case "segment":
+            pen.line(corners, fill=ink["fill"], width=max(2, round(2 * grown)))
+        case "polygon":
+            pen.polygon(corners, **ink)
+            if grown:
+                pen.line([*corners, corners[0]], fill=ink["fill"], width=round(2 * grown))
+        case _:
+            assert_never(shape)
 
 
 def _palette(colours: set[str]) -> Image:

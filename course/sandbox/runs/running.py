@@ -13,7 +13,7 @@ from course.sandbox.scene.expression import evaluate
 from course.sandbox.scene.loading import Chosen, Comparison, compare, values_of, with_settings
 from course.sandbox.scene.model import Probe, Scene, layout
 from course.sandbox.scene.rules import matching
-from course.sandbox.world.accounts import MINOR, SAMPLED, Event, Receipt
+from course.sandbox.world.accounts import MINOR, Event, Receipt
 from course.sandbox.world.engine import Block, Floats
 from course.sandbox.world.world import Snapshot, World
 
@@ -44,7 +44,8 @@ class Probes:
         state = world.state()
         for probe in self._scene.probe:
             self._start[probe.name] = self._value(probe, state)
-            self._take(probe, self._start[probe.name])
+            if probe.when in {"start", "max", "min"}:
+                self._found[probe.name] = self._start[probe.name]
         world.on_block.append(self._watch)
 
     def read(self, events: Sequence[Event]) -> dict[str, float]:
@@ -74,12 +75,8 @@ class Probes:
             if probe.quantity == "contacts":
                 return float(sum(not event.minor for event in mine)) * probe.scale
             return mine[0].t * probe.scale if mine else math.nan
-        if probe.when == "end":
-            value = self._value(probe, state)
-        elif probe.when == "start":
-            value = self._start[probe.name]
-        else:
-            value = self._found.get(probe.name, math.nan)
+        ends = probe.when == "end"
+        value = self._value(probe, state) if ends else self._found.get(probe.name, math.nan)
         return (value - self._start[probe.name] * probe.change) * probe.scale
 
     def _watch(self, block: Block) -> None:
@@ -88,8 +85,9 @@ class Probes:
             self._times = self._moments()
         for probe in self._scene.probe:
             if probe.when in {"max", "min"}:
+                best = max if probe.when == "max" else min
                 for state in block.states:
-                    self._take(probe, self._value(probe, state))
+                    self._found[probe.name] = best(self._found[probe.name], self._value(probe, state))
             elif probe.when == "at" and probe.name not in self._found:
                 # The first step that ends there or later; times are exact multiples, but for rounding.
                 rows = np.flatnonzero(block.times >= self._times[probe.name] - 1e-9)
@@ -120,11 +118,6 @@ class Probes:
             return False
         mine, pairs = self._of[probe.name], ((event.a, event.b), (event.b, event.a))
         return any(one in mine and probe.other in {None, other} for one, other in pairs)
-
-    def _take(self, probe: Probe, value: float) -> None:
-        if probe.when in {"max", "min"}:
-            best = max if probe.when == "max" else min
-            self._found[probe.name] = best(self._found.get(probe.name, value), value)
 
     def _value(self, probe: Probe, state: Floats) -> float:
         """The quantity in one state; "nan" if none of its bodies is there."""
@@ -164,6 +157,8 @@ class Probes:
 COLUMNS = ("t [s]", "body", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "spin [rad/s]")
 #: Rows of a table at most, so that a long run of a large scene gives a file that can be opened.
 _MOST_ROWS = 200_000
+#: How often momentum is looked at, in simulated s.
+_LOOK = 1 / 60
 
 
 class Run(msgspec.Struct, frozen=True, kw_only=True):
@@ -223,18 +218,20 @@ def run(
     until = chosen.scene.duration if duration is None else duration
     before = world.momentum
     least = most = np.array(before[:2])
-    at_px = SAMPLED.index("px")
+
+    def look() -> None:
+        nonlocal least, most
+        now = world.momentum[:2]
+        least, most = np.minimum(least, now), np.maximum(most, now)
+
+    world.on_tick.append((max(1, round(_LOOK / world.settings["step"])), look))
     events: list[Event] = []
     samples: list[tuple[float, tuple[str, ...], Floats]] = []
     moving = sum(not part.fixed for part in world.parts) or 1
     for t, is_sample, is_frame in _stops(until, every, fps if on_frame else 0.0, also_at):
-        since = world.t
         world.run_until(t)
         events += world.drain_events()
-        # The world keeps a minute of samples, and is asked at least once a second.
-        rows = [row[at_px : at_px + 2] for row in world.samples(since)]
-        momenta = np.array([least, most, *rows, world.momentum[:2]])
-        least, most = momenta.min(axis=0), momenta.max(axis=0)
+        look()
         if is_sample and len(samples) * moving < _MOST_ROWS:
             free = [i for i, part in enumerate(world.parts) if not part.fixed]
             samples.append((world.t, tuple(world.parts[i].name for i in free), world.state()[free]))

@@ -29,6 +29,11 @@ Frame: TypeAlias = NDArray[np.float32]
 
 #: Numbers in front of the bodies of a frame; ``camera.js`` has the same.
 HEAD = 24
+#: What samples hold of them, in s, J, kg m/s and kg m²/s, and where in a frame that is.
+SAMPLED = ("t", "kinetic", "potential", "contacts", "friction", "rods", "residual", "px", "py", "angular")
+_SAMPLED_AT = [2, *range(11, 20)]
+#: Samples of the last so many s are given, and so many of them at most.
+_MINUTE, _MOST_SAMPLES = 60.0, 3600
 #: Of each body: x, y, angle, vx, vy.
 PER_BODY = 5
 #: Between two frames, in simulated s; of a run that is over in a moment, this part of it.
@@ -74,20 +79,14 @@ def shot_of(kept: Frame) -> Snapshot:
 
 def account_of(kept: Frame, start: float) -> tuple[Receipt, tuple[float, float, float]]:
     """What a frame says of energy and momentum; ``start`` is the run's energy at time 0, in J."""
-    kinetic, potential, contacts, friction, rods, residual, px, py, angular = kept[11:20].tolist()
+    sample = dict(zip(SAMPLED, kept[_SAMPLED_AT].tolist(), strict=True))
+    px, py, angular = (sample.pop(name) for name in ("px", "py", "angular"))
+    del sample["t"]
     given = float(kept[22]) - start
-    receipt = Receipt(
-        start=start,
-        given=given if abs(given) > 1e-6 * abs(start) else 0.0,  # the frame's numbers have seven digits
-        kinetic=kinetic,
-        potential=potential,
-        contacts=contacts,
-        friction=friction,
-        rods=rods,
-        residual=residual,
-        integrator=0.0,  # a frame does not have this part of what is missing
-    )
-    return receipt, (px, py, angular)
+    if abs(given) <= 1e-6 * abs(start):  # the frame's numbers have seven digits
+        given = 0.0
+    # A frame does not have the integrator's part of what is missing.
+    return Receipt(start=start, given=given, integrator=0.0, **sample), (px, py, angular)
 
 
 class Tape:
@@ -156,6 +155,17 @@ class Tape:
         """Where everything was at this time."""
         return self.frames[self.at(t)]
 
+    def samples(self, after: float = -math.inf, until: float = math.inf) -> Frame:
+        """Energies and momenta later than ``after`` and up to ``until``, in s; a row as ``SAMPLED`` says.
+
+        They go back a minute.
+        """
+        end = bisect_right(self.times, until + 1e-9)
+        begin = bisect_right(self.times, max(after, self.times[max(0, end - 1)] - _MINUTE))
+        kept = self.frames[begin:end]
+        heads = [one[:HEAD] for one in kept[:: len(kept) // _MOST_SAMPLES + 1]]
+        return np.array(heads, dtype="<f4").reshape(-1, HEAD)[:, _SAMPLED_AT]
+
     def path(self, name: str, most: int = 1500) -> Frame:
         """Where a body was and when, (k, 3): t, x, y, in s and m; at most so many places."""
         rows = {
@@ -195,7 +205,7 @@ class Tape:
             reel.take(self.casts[int(one[1])], shot_of(one))
             if not told((number + 1 - first) / (count + 1 - first)):
                 raise UsageError("The film was stopped.", code="stopped")
-        return reel.made(kind, FILM_FPS)
+        return reel.gif(FILM_FPS) if kind == "gif" else reel.mp4(FILM_FPS)
 
     def mark(self, t: float) -> None:
         """A contact, if it is far enough from the last one to be a mark of its own."""

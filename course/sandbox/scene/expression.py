@@ -19,7 +19,10 @@ def evaluate(text: str, values: Mapping[str, float]) -> float:
     """
     read = _read(text)
     for name in sorted(read.names - values.keys()):
-        help_ = f"Known: {', '.join(sorted(values))}."
+        plain = sorted(known for known in values if "." not in known)
+        fields = dict.fromkeys(known.partition(".")[2] for known in values if "." in known)
+        of_bodies = f", and a body's {', '.join(fields)}" if fields else ""
+        help_ = f"Known: {', '.join(plain)}{of_bodies}."
         raise _refused(name, "is not a name that this scene knows", help=help_)
     try:
         return float(read.value(values))

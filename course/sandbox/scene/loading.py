@@ -207,13 +207,18 @@ def _check_formulas(document: Document[Scene]) -> None:
     texts: dict[tuple[str | int, ...], str] = {
         ("probe", i, "time"): f"{{{probe.time}}}"
         for i, probe in enumerate(scene.probe)
-        if isinstance(probe.time, str)
+        if probe.time is not None
     }
     if scene.prediction is not None:
         texts |= {("prediction", key): getattr(scene.prediction, key) for key in ("question", "why")}
         texts[_THEORY] = f"{{{scene.prediction.theory}}}"
-    asked = [text for where, text in texts.items() if where != _THEORY]
-    named = {name.rpartition(".")[2] for text in asked for name in used(text)}
+    named: set[str] = set()
+    for where, text in texts.items():
+        try:
+            names_in = used(text)
+        except UsageError as error:
+            document.fail(where, error.message, fix=error.help)
+        named |= {name.rpartition(".")[2] for name in names_in} if where != _THEORY else set()
     for settings in _ends(scene, named):
         try:
             chosen = _put_in(scene, dict(settings), document.path)
@@ -234,9 +239,8 @@ def _check_formulas(document: Document[Scene]) -> None:
                 there = "".join(f" at {name}={value:g}" for name, value in settings.items())
                 document.fail(where, f"{error.message.rstrip('.')}{there}.", fix=error.help)
             if time is not None and not 0.0 <= time <= scene.duration:
-                document.fail(
-                    where, f"that is {time:g} s, which no run sees.", fix="Make it 0 to `duration`."
-                )
+                problem = f"that is {time:g} s, which no run sees."
+                document.fail(where, problem, fix="Make it 0 to `duration`, or that longer.")
 
 
 def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:
@@ -276,20 +280,23 @@ def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool 
         values[name] = value
     numbers = {name.replace("-", "_"): value for name, value in values.items()}
     for place, formula in scene.sets.items():
-        _set(raw, place, evaluate(formula, numbers))
-    raw["seed"] = seed
-    try:
-        ready = msgspec.convert(raw, Scene)
-    except msgspec.ValidationError as error:
-        raise _misfit(scene, numbers, str(error)) from error
+        value = evaluate(formula, numbers)
+        target, key = slot(raw, place)
+        kind = type(target[key])
+        target[key] = kind(value) if kind in {int, bool} else value  # whole numbers stay whole
+        try:
+            msgspec.convert(raw, Scene)
+        except msgspec.ValidationError as error:
+            allowed = str(error).partition(" - at ")[0].partition("` ")[2] or "of another kind"
+            where = ", ".join(f"{name}={numbers[name]:g}" for name in sorted(names(formula)))
+            raise MisfitError(
+                place,
+                f"With {where}, {place} is {value:g}, and must be {allowed}.",
+                f"Choose other values, or correct its formula, {formula}.",
+            ) from error
+    ready = msgspec.convert(raw | {"seed": seed}, Scene)
     checked_rest = {name: checked(name, value) for name, value in rest.items()}
     return Chosen(scene=ready, parameters=values, settings=checked_rest, path=path, own=own)
-
-
-def _set(raw: dict[str, Any], place: str, value: float) -> None:
-    target, key = slot(raw, place)
-    kind = type(target[key])
-    target[key] = kind(value) if kind in {int, bool} else value  # whole numbers stay whole
 
 
 class MisfitError(UsageError):
@@ -302,25 +309,6 @@ class MisfitError(UsageError):
     def __init__(self, place: str, message: str, help_: str) -> None:
         super().__init__(message, help=help_, code="bad_parameter")
         self.place = place
-
-
-def _misfit(scene: Scene, numbers: Mapping[str, float], error: str) -> MisfitError:
-    """Which of the formulas gave what does not fit: the first that does not by itself."""
-    for place, formula in scene.sets.items():
-        raw: dict[str, Any] = msgspec.to_builtins(scene)
-        value = evaluate(formula, numbers)
-        _set(raw, place, value)
-        try:
-            msgspec.convert(raw, Scene)
-        except msgspec.ValidationError as alone:
-            allowed = str(alone).partition(" - at ")[0].partition("` ")[2] or "of another kind"
-            given = ", ".join(f"{name}={numbers[name]:g}" for name in sorted(names(formula)))
-            return MisfitError(
-                place,
-                f"With {given}, {place} is {value:g}, and must be {allowed}.",
-                f"Choose other values, or correct its formula, {formula}.",
-            )
-    return MisfitError("", f"The parameters do not fit the scene: {error}.", "Choose other values.")
 
 
 # ---

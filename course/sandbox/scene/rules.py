@@ -34,21 +34,13 @@ class Setting:
     whole: bool = False
 
 
+_OF_BODIES = "of every movable body; fixed ones keep theirs, pairs multiply"
 SETTINGS: dict[str, Setting] = {
     s.name: s
     for s in (
         Setting("gravity", "m/s²", "size of gravity; its direction is the scene's", 0.0, 100.0, 0.5),
-        Setting(
-            "restitution",
-            "1",
-            "of every movable body; fixed ones keep theirs, pairs multiply",
-            0.0,
-            1.0,
-            0.05,
-        ),
-        Setting(
-            "friction", "1", "of every movable body; fixed ones keep theirs, pairs multiply", 0.0, 10.0, 0.05
-        ),
+        Setting("restitution", "1", _OF_BODIES, 0.0, 1.0, 0.05),
+        Setting("friction", "1", _OF_BODIES, 0.0, 10.0, 0.05),
         Setting("step", "s", "size of the time step", 1e-5, 0.1, 2.0, times=True),
         Setting(
             "iterations", "1", "of the contact solver in each step", 1, 1000, 2.0, times=True, whole=True
@@ -106,8 +98,6 @@ def number(value: object, what: str) -> float:
 
 #: The fields that ``body.field`` may name in a formula.
 FIELDS = ("x", "y", "vx", "vy", "mass", "radius", "restitution", "friction")
-#: Names that a formula may use besides parameters and bodies.
-WORDS = ("g", "step", "iterations", "duration", "left", "right")
 
 _NEEDS: dict[Shape, tuple[str, ...]] = {
     "circle": ("radius",),
@@ -331,10 +321,6 @@ def _check_probe(document: Document[Scene], i: int, probe: Probe, bodies: int) -
     where = ("probe", i)
     if (probe.when == "at") != (probe.time is not None):
         document.fail(where, 'a probe needs `time` exactly when `when` is "at".', fix="Add it, or remove it.")
-    if isinstance(probe.time, str):
-        _check_names(document, (*where, "time"), _names(document, (*where, "time"), probe.time))
-    elif probe.time is not None and probe.time > document.value.duration:
-        document.fail((*where, "time"), "that is after the run has ended.", fix="Make `duration` longer.")
     if (probe.quantity == "count") != (probe.region is not None):
         document.fail(
             where, "a probe needs `region` exactly when it is a count.", fix="Add it, or remove it."
@@ -356,28 +342,6 @@ def _check_prediction(document: Document[Scene]) -> None:
         document.fail(
             ("prediction",), "how far may theory be off?", fix="Add `agrees` (a fraction) or `agrees_abs`."
         )
-    _check_names(document, ("prediction", "theory"), _names(document, ("prediction", "theory"), asked.theory))
-    for key in ("question", "why"):
-        try:
-            used = expression.used(getattr(asked, key))
-        except UsageError as error:
-            document.fail(("prediction", key), error.message, fix=error.help)
-        _check_names(document, ("prediction", key), used)
-
-
-def _check_names(document: Document[Scene], where: tuple[str | int, ...], used: frozenset[str]) -> None:
-    """Check that a formula uses only names that ``loading.values_of`` gives."""
-    scene = document.value
-    bodies = {part.name.replace("-", "_") for part in layout(scene)}
-    known = {parameter.name.replace("-", "_") for parameter in scene.parameter} | set(WORDS)
-    for name in sorted(used):
-        body, _, field = name.partition(".")
-        if (field and (body not in bodies or field not in FIELDS)) or (not field and name not in known):
-            document.fail(
-                where,
-                f"the formula uses {name}, which is not defined.",
-                fix=f"Use {', '.join(sorted(known))}, or a body's {', '.join(FIELDS)}.",
-            )
 
 
 def _known(names: set[str]) -> str:

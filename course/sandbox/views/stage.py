@@ -105,12 +105,11 @@ class Moment:
 
 @dataclass
 class _Work:
-    """A moment that is being made again, and what could be undone and redone ``before``."""
+    """A moment that is being made again."""
 
     steps: Iterator[float]
     done: Callable[[], None]
     says: str
-    before: tuple[list[Moment], list[Moment]]
     share: float = 0.0
 
 
@@ -306,12 +305,15 @@ class Stage:
             return
         tick = self.tape.ticks[self.tape.at(self.at)]
         count = sum(one.tick <= tick for one in self.recording.inputs)
-        before = list(self._undos), list(self._redos)
-        self._push(self._undos, self._now("going on from earlier"))
-        self._redos.clear()
-        t = self.tape.times[self.tape.at(self.at)]
+        t, now = self.tape.times[self.tape.at(self.at)], self._now("going on from earlier")
+
+        def leave() -> None:
+            self._push(self._undos, now)
+            self._redos.clear()
+            self.ghost = self.tape
+
         there = Moment(self.chosen, self.recording, count, tick, t)
-        self._make(there, f"Going on from {t:.2f} s", before, paused=False, ghost=True)
+        self._make(there, f"Going on from {t:.2f} s", leave, paused=False)
 
     def undo(self) -> None:
         """Back to the moment before the last thing that was done."""
@@ -324,7 +326,7 @@ class Stage:
     def stop_work(self) -> None:
         """Give up what is being made again; everything is as it was."""
         if self._work is not None:
-            (self._undos, self._redos), self._work = self._work.before, None
+            self._work = None
             self.news.append("Stopped: everything is as it was.")
 
     def set_parameter(self, name: str, value: float) -> None:
@@ -454,23 +456,18 @@ class Stage:
         self.present()
         if self.world.held:
             self.act("release")
-        before = list(self._undos), list(self._redos)
-        there = stack.pop()
-        self._push(other, self._now(there.why))
-        self._last = ("", None, -math.inf)
-        says = f"{which.capitalize()}: {there.why}, at {there.t:.2f} s"
-        self._make(there, says, before, paused=True)
+        there = stack[-1]
+        now = self._now(there.why)
 
-    def _make(
-        self,
-        there: Moment,
-        says: str,
-        before: tuple[list[Moment], list[Moment]],
-        *,
-        paused: bool,
-        ghost: bool = False,
-    ) -> None:
-        """Begin to make a moment again; ``tick`` goes on with it."""
+        def leave() -> None:
+            self._push(other, now)
+            stack.pop()
+            self._last = ("", None, -math.inf)
+
+        self._make(there, f"{which.capitalize()}: {there.why}, at {there.t:.2f} s", leave, paused=True)
+
+    def _make(self, there: Moment, says: str, leave: Callable[[], None], *, paused: bool) -> None:
+        """Begin to make a moment again; ``tick`` goes on with it, and calls ``leave`` before it is there."""
         world, recording, inputs = there.recording.begun(there.count, self.world.version + 1)
         tape, narrator = Tape(world, recording), Narrator()
         experiment = Experiment(world, there.chosen, self.experiment.guess, None)
@@ -507,8 +504,7 @@ class Stage:
                 yield share
 
         def done() -> None:
-            if ghost:
-                self.ghost = self.tape
+            leave()
             world.paused, world.speed = paused, self.world.speed
             self.chosen, self.world, self.recording = there.chosen, world, recording
             self.tape, self.experiment, self.narrator = tape, experiment, narrator
@@ -522,7 +518,7 @@ class Stage:
             self.anew += 1
             self.news.append(f"{says}.")
 
-        self._work = _Work(steps(), done, says, before)
+        self._work = _Work(steps(), done, says)
         self._work_on(BUDGET)
 
     def _work_on(self, budget: float) -> None:

@@ -1,7 +1,6 @@
-"""The accounts of a running world: where energy came from, where it went, and a minute of history."""
+"""The accounts of a running world: where energy came from and where it went."""
 
 import math
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -257,15 +256,8 @@ class Receipt(msgspec.Struct, frozen=True, kw_only=True):
 
 #: States of bodies that are booked together, and steps: more would not fit the cache.
 _STATES, _STEPS = 3200, 256
-#: How often the history is sampled, in s of simulated time, and how many samples are kept.
-_SAMPLE = 1 / 60
-_KEPT = 3600
 #: The gravity that presses wheels onto the ground of a scene without a floor, in m/s².
 _WEIGHT = 9.81
-
-
-#: Columns of a sample, in s, J, kg m/s and kg m²/s.
-SAMPLED = ("t", "kinetic", "potential", "contacts", "friction", "rods", "residual", "px", "py", "angular")
 
 
 @dataclass(slots=True)
@@ -314,13 +306,11 @@ class Accounts:
         #: The state that the next step starts from; (n, 6).
         self.base = space.state()
         self.ledger.start = self._energy()
-        self._history: deque[list[float]] = deque(maxlen=_KEPT)
         #: By row of the block to come: velocities after a push, energy given by it, energy rubbed off.
         self._pushes: dict[int, tuple[Floats, float, float]] = {}
         #: By row of the block to come: the body that a hand held, and the impulses of the hand.
         self._held: dict[int, tuple[int, tuple[float, float, float]]] = {}
         self._ties = space.ties()
-        self._remember(np.zeros(1), self.base[None], np.zeros((1, 4)))
 
     # -- reading ---------------------------------------------------------------------------------
 
@@ -340,15 +330,6 @@ class Accounts:
             residual=ledger.start + ledger.given - spent,
             integrator=ledger.integrator,
         )
-
-    def samples(self, after: float) -> list[list[float]]:
-        """The rows of the history that are later than this time, in s; call ``close`` first."""
-        rows: list[list[float]] = []
-        for row in reversed(self._history):
-            if row[0] <= after:
-                break
-            rows.append(row)
-        return rows[::-1]
 
     # -- booking ---------------------------------------------------------------------------------
 
@@ -383,38 +364,21 @@ class Accounts:
                 impulses[row, body] = pulled
             self._held.clear()
             given += self.ledger.work(block, impulses)
-        self._book(block, given, impulses, rubbed)
+        resized = first == self.clock.at + 1 > 1
+        self.ledger.settle(block, self.clock.size, impulses, self._ties, resized=resized)
+        self.ledger.given += float(given.sum())
+        self.ledger.friction += float(rubbed.sum())
         self.base = states[-1].copy()
         return block
-
-    def _book(self, block: Block, given: Floats, by_hand: Floats | None, rubbed: Floats) -> None:
-        """Book a block and what was pushed during it, and sample it for the history."""
-        ledger = self.ledger
-        had = ledger.given, ledger.contacts, ledger.friction, ledger.rods
-        resized = block.first_step == self.clock.at + 1 > 1
-        contacts, friction, rods = ledger.settle(block, self.clock.size, by_hand, self._ties, resized=resized)
-        ledger.given += float(given.sum())
-        ledger.friction += float(rubbed.sum())
-        every = max(1, round(_SAMPLE / self.clock.size))
-        rows = slice((-block.first_step) % every, None, every)
-        changes = (np.cumsum([given, contacts, friction + rubbed, rods], axis=1).T + had)[rows]
-        self._remember(block.times[rows], block.states[rows], changes)
 
     def resume(self, sums: tuple[float, ...]) -> None:
         """Go on with these sums after steps of which nothing was kept."""
         self._pushes.clear()
         self._held.clear()
-        self._history.clear()
         self.ledger.sums, self.base = sums, self.space.state()
 
-    def gave(self) -> None:
-        """Something was changed from outside since ``base``: book the energy it brought as given."""
-        had = self._energy()
-        self.base = self.space.state()
-        self.ledger.given += self._energy() - had
-
     def recast(self, gravity: tuple[float, float]) -> None:
-        """Bodies came or went, or gravity changed: book the energy it brought as given."""
+        """Bodies came, went or were changed since ``base``, or gravity was: book what it brought as given."""
         had = self._energy()
         self.ledger.adopt(self.space.parts, gravity)
         self._ties = self.space.ties()
@@ -446,18 +410,3 @@ class Accounts:
 
     def _energy(self) -> float:
         return self.ledger.kinetic(self.base) + self.ledger.potential(self.base)
-
-    def _remember(self, times: Floats, states: Floats, changes: Floats) -> None:
-        """Put samples into the history.
-
-        Args:
-            times: (k,), in s.
-            states: (k, n, 6).
-            changes: given, and lost in contacts, to friction and in rods until then; (k, 4), in J.
-        """
-        if not len(times):
-            return
-        table = self.ledger.table(states)
-        rest = self.ledger.start + changes[:, 0] - table[:, :2].sum(axis=1) - changes[:, 1:].sum(axis=1)
-        rows = np.column_stack([times, table[:, :2], changes[:, 1:], rest, table[:, 2:]])
-        self._history.extend(rows.tolist())

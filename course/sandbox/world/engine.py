@@ -139,7 +139,7 @@ class Ledger:
 
     def settle(
         self, block: Block, step: float, given: Floats | None, tied: Ties | None, *, resized: bool
-    ) -> tuple[Floats, Floats, Floats]:
+    ) -> None:
         """Book the losses of a block, each from the impulses of its own kind.
 
         Args:
@@ -148,9 +148,6 @@ class Ledger:
             tied: the joints, if there are any.
             resized: the step before the block had another size. Contacts then begin with the impulses of
                 that step times the ratio of the sizes, and the engine tells them without that factor.
-
-        Returns:
-            What each step lost in contacts, to friction and in rods, (k,) each, in J.
         """
         before, after = block.before, block.states[:, :, 3:]
         mean, half = (before + after) / 2, block.contacts.half
@@ -173,15 +170,13 @@ class Ledger:
                 lost -= (turned * mean[:, :, 2]).sum(axis=1)
             if resized:
                 lost[0] -= (left[0] * mean[0]).sum()
-        contacts = lost - friction
-        self.contacts += float(contacts.sum())
+        self.contacts += float((lost - friction).sum())
         self.friction += float(friction.sum())
         self.rods += float(rods.sum())
         # Bodies are moved before they are accelerated, and out of each other without a velocity.
         jumps = block.states[-1, :, :2] - block.start - before[:, :, :2].sum(axis=0) * step
         self.integrator += float((before - after).sum(axis=0).ravel() @ self._weight_force) * step / 2
         self.integrator += float(jumps.ravel() @ self._weight_force.reshape(-1, 3)[:, :2].ravel())
-        return contacts, friction, rods
 
     def _levers(self, block: Block, half: Floats) -> Floats:
         """The most that edges can turn each body beyond that, (k, n), in N m s."""
@@ -190,14 +185,6 @@ class Ledger:
         summed = [_by_place(c.row * bodies + body, most, count * bodies) for body in (c.a, c.b)]
         levers: Floats = (summed[0] + summed[1]).reshape(count, bodies) * (1 + 1e-9)
         return levers
-
-    def table(self, states: Floats) -> Floats:
-        """Kinetic and potential energy, and momentum along x, y and about the origin, of states (k, n, 6)."""
-        x, y, vx, vy, spin = (states[:, :, i] for i in (0, 1, 3, 4, 5))
-        energies = (states[:, :, 3:] ** 2).reshape(len(states), -1) @ self._weights
-        heights = states[:, :, :2].reshape(len(states), -1) @ self._heights
-        angular = (x * vy - y * vx) @ self.mass + spin @ self.inertia
-        return np.column_stack([energies, heights, vx @ self.mass, vy @ self.mass, angular])
 
     def work(self, block: Block, impulses: Floats) -> Floats:
         """What impulses gave that acted inside the steps, (k,), in J.

@@ -1,7 +1,7 @@
 """A scene that runs: fixed steps, one stream of events, and an account of energy and momentum.
 
 Views know nothing of the engine. They say how much real time has passed (``advance``), draw ``snapshot()``,
-read ``drain_events()``, ``receipt`` and ``samples()``, and pass on the user's actions. Each action also goes
+read ``drain_events()`` and ``receipt``, and pass on the user's actions. Each action also goes
 to ``on_input``, with the tick before which it happened: all that a replay needs.
 """
 
@@ -250,11 +250,6 @@ class World:
         """Along x and y in kg m/s, and angular about the origin in kg m²/s."""
         return self._accounts.ledger.momentum(self._space.state())
 
-    def samples(self, after: float = -math.inf) -> list[list[float]]:
-        """Of the last minute, the rows that are later than this time, in s; ``SAMPLED`` names the columns."""
-        self._settle()
-        return self._accounts.samples(after)
-
     def state_hash(self) -> str:
         """Sixteen letters that stand for every bit of every body's state."""
         names = "\n".join(part.name for part in self.parts).encode()
@@ -391,7 +386,7 @@ class World:
         self._input("throw", x, y, vx, vy, reach)
         self._settle()
         self._space.body(name).velocity = vx, vy
-        self._accounts.gave()
+        self._accounts.recast(self._gravity())
         self._say(f"{name} is thrown at {math.hypot(vx, vy):.2f} m/s", name)
         return name
 
@@ -449,7 +444,7 @@ class World:
         if not self._space.place(name, x, y):
             return False
         self._input("place", name, x, y)
-        self._accounts.gave()
+        self._accounts.recast(self._gravity())
         self._say(f"{name} is put elsewhere", name)
         return True
 
@@ -460,7 +455,7 @@ class World:
         self._input("aim", name, vx, vy)
         self._settle()
         self._space.body(name).velocity = vx, vy
-        self._accounts.gave()
+        self._accounts.recast(self._gravity())
         self._say(f"{name} now moves at {math.hypot(vx, vy):.2f} m/s", name)
 
     def change(self, name: str, key: str, value: float) -> None:
@@ -528,7 +523,7 @@ class World:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
         if self._wheeled:
             self.settings |= {"left": 0.0, "right": 0.0}
-        self._accounts.gave()
+        self._accounts.recast(self._gravity())
         self._say("everything is stopped")
 
     def number_of(self, name: str, key: str) -> float:

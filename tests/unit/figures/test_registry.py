@@ -30,7 +30,7 @@ def test_the_tolerance_sees_one_method_drawn_as_another(figure_id, monkeypatch):
     swapped = {**integrators.STEPPERS, "explicit_euler": integrators.STEPPERS["semi_implicit_euler"]}
     monkeypatch.setattr(integrators, "STEPPERS", swapped)
     (fault,) = [fault for fault in faults(figure_id, GOLDEN) if "looks other" in fault.problem]
-    assert fault.fix.endswith(f"course author pictures {figure_id}")
+    assert fault.help.endswith(f"course author pictures {figure_id}")
 
 
 def drawn(change):
@@ -83,7 +83,7 @@ def test_a_figure_that_cannot_be_drawn_or_read_is_found(tmp_path, monkeypatch, c
 def test_a_figure_that_nobody_looked_at_is_told_its_cure(tmp_path):
     (fault,) = faults("integrators-stability", tmp_path)
     assert "no picture to be compared with" in fault.problem
-    assert "course author pictures integrators-stability" in fault.fix
+    assert "course author pictures integrators-stability" in fault.help
     assert fault.file.name == "integrators.py"
     assert (fault.line or 0) > 1
 

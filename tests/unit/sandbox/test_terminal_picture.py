@@ -209,9 +209,9 @@ def test_a_slow_machine_is_named_and_a_quick_one_is_not():
 @pytest.mark.parametrize(("width", "height"), [(23, 10), (23, 19), (27, 19), (43, 40), (43, 60)])
 @pytest.mark.parametrize("scene", ["newtons-cradle", "robot-boxes"])
 def test_the_panel_fits_and_its_energies_add_up(scene, width, height):
-    world = World(choose(scene).scene)
-    world.run_until(0.3)
-    lines = panel(world, [("angle", "30 deg")], width, height)
+    stage = Stage(choose(scene))
+    stage.world.run_until(0.3)
+    lines = panel(stage, [("angle", "30 deg")], width, height)
     assert len(lines) <= height
     assert {len(plain(line)) for line in lines if len(line) == 3} == {width}
     if height >= 19:
@@ -226,13 +226,14 @@ def test_the_panel_fits_and_its_energies_add_up(scene, width, height):
 
 def test_beside_the_past_stands_what_was_then():
     stage = Stage(choose("pendulum-wall"), clock=lambda: 0.0)
-    before = [plain(line) for line in panel(stage.world, (), 43, 40)]
+    before = [plain(line) for line in panel(stage, (), 43, 40)]
     for _ in range(20):
         stage.tick(0.07)
     stage.look(0.0)
-    past = [plain(line) for line in panel(stage.world, (), 43, 40, stage.frame())]
+    past = [plain(line) for line in panel(stage, (), 43, 40)]
     assert [line.split()[-1:] for line in past] == [line.split()[-1:] for line in before]
-    assert past != [plain(line) for line in panel(stage.world, (), 43, 40)]
+    stage.present()
+    assert past != [plain(line) for line in panel(stage, (), 43, 40)]
 
 
 def test_speeds_are_said_in_words():
@@ -244,6 +245,6 @@ def test_speeds_are_said_in_words():
 
 
 def test_where_room_is_short_every_setting_is_still_there():
-    lines = [plain(line) for line in panel(World(choose("newtons-cradle").scene), (), 23, 15)]
+    lines = [plain(line) for line in panel(Stage(choose("newtons-cradle")), (), 23, 15)]
     for name in ("gravity", "restitution", "friction", "step h", "iterations", "along y"):
         assert any(name in line for line in lines), name

@@ -356,9 +356,12 @@ def test_plots_get_every_sample_however_few_frames_there_were():
     for _ in range(10):
         made.tick(0.1)
     rows = np.concatenate([one[3:].reshape(-1, int(one[2])) for one in frames(page) if one[0] == 2])
-    assert np.diff(rows[:, 0]).max() == pytest.approx(1 / 60, rel=0.01)
-    assert rows[-1, 0] == pytest.approx(made.stage.world.t, abs=1 / 60)
-    assert len(rows) == pytest.approx(60 * made.stage.world.t, abs=2)
+    assert np.diff(rows[:, 0]).max() == pytest.approx(1 / 120, rel=0.01)  # 240 in this scene's two seconds
+    assert rows[-1, 0] == pytest.approx(made.stage.world.t, abs=1 / 120)
+    assert len(rows) == pytest.approx(120 * made.stage.world.t, abs=2)
+    receipt = made.stage.world.receipt
+    np.testing.assert_allclose(rows[:, 1:7].sum(axis=1), receipt.start + receipt.given, rtol=1e-6)
+    assert rows[-1, 3] == pytest.approx(receipt.contacts, rel=1e-3)
 
 
 def test_start_and_given_are_in_every_frame_so_that_the_account_can_be_seen_to_close():

@@ -251,8 +251,6 @@ def test_a_throw_along_a_rod_is_lost_in_the_rod_and_not_by_the_solver(scene_name
     after = world.receipt
     assert after.rods - before.rods == pytest.approx(mass * 25 / 2, rel=2e-3)  # gravity pulls meanwhile
     assert abs(after.residual - before.residual) < 0.01 * after.rods
-    world.run_until(world.t + 1 / 30)
-    assert world.samples()[-1][5] == pytest.approx(world.receipt.rods, rel=1e-2)
 
 
 def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws():

@@ -17,28 +17,8 @@ from course.sandbox.scene.loading import NO_GUESS, guess_of, scenes
 from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.story import Experiment
-from course.sandbox.views.terminal.asking import (
-    NARROW,
-    Gallery,
-    LineOverlay,
-    PageOverlay,
-    comparison,
-    help_pages,
-)
+from course.sandbox.views.terminal import asking, words
 from course.sandbox.views.terminal.hand import Pointer, Sight
-from course.sandbox.views.terminal.words import (
-    KEYS,
-    Canvas,
-    Line,
-    Lines,
-    clean,
-    head,
-    keys_line,
-    panel,
-    setting,
-    speed_in_words,
-    wrapped,
-)
 from course.sandbox.world.world import NUMBERS, World
 
 #: Of a film, in pixels.
@@ -84,7 +64,7 @@ class SandboxApp(FullScreenApp):
         Binding("k", "now", show=False),
         Binding("u,ctrl+z", "stage('undo')", show=False),
         Binding("U,ctrl+y", "stage('redo')", show=False),
-        Binding("v", "aim", show=False),
+        Binding("v", "pointer('aim_at')", show=False),
         Binding("y", "near('copy')", show=False),
         Binding("delete,backspace", "near('remove')", show=False),
         Binding("s", "stop", show=False),
@@ -101,8 +81,8 @@ class SandboxApp(FullScreenApp):
         Binding("minus,underscore", "speed(0.5)", show=False),
         Binding("plus,equals_sign", "speed(2.0)", show=False),
         Binding("question_mark,f1", "help", show=False),
-        Binding("c", "spawn('circle')", show=False),
-        Binding("b", "spawn('box')", show=False),
+        Binding("c", "pointer('spawn', 'circle')", show=False),
+        Binding("b", "pointer('spawn', 'box')", show=False),
         Binding("n", "names", show=False),
         Binding("l", "events", show=False),
         Binding("p", "question", show=False),
@@ -116,7 +96,7 @@ class SandboxApp(FullScreenApp):
         ),
         *(
             Binding(key, f"notch('{name}', {way})", show=False)
-            for name, (less, more, _) in KEYS.items()
+            for name, (less, more, _) in words.KEYS.items()
             for key, way in ((less, -1), (more, 1))
         ),
     ]
@@ -141,11 +121,11 @@ class SandboxApp(FullScreenApp):
         self._panel_wanted = True
         self._room, self._below = Size(80, 24), 1  # lines below the picture
         ink, paper, bar = (_COLOURS[name] if self.in_colour else None for name in ("ink", "paper", "bar"))
-        self.canvas = Canvas(colour=self.in_colour, id="canvas")
-        self.head = Lines(ink, bar, id="head")
-        self.panel = Lines(ink, paper, id="panel")
-        self.events = Lines(ink, paper, id="events")
-        self.keys = Lines(ink, bar, id="keys")
+        self.canvas = words.Canvas(colour=self.in_colour, id="canvas")
+        self.head = words.Lines(ink, bar, id="head")
+        self.panel = words.Lines(ink, paper, id="panel")
+        self.events = words.Lines(ink, paper, id="events")
+        self.keys = words.Lines(ink, bar, id="keys")
 
     def put_on(self, stage: Stage) -> None:
         self.stage = stage
@@ -193,7 +173,7 @@ class SandboxApp(FullScreenApp):
 
     def _lay_out(self) -> None:
         width, height = self._room
-        beside = self._panel_wanted and width >= NARROW
+        beside = self._panel_wanted and width >= asking.NARROW
         self.panel.display = beside
         self.panel.styles.width = 26 if width < 76 else 30 if width < 110 else 46
         self.events.display = height >= _LOWEST
@@ -222,7 +202,7 @@ class SandboxApp(FullScreenApp):
             self._anew, self._lines, told = stage.anew, [], stage.narrator.told()
             self.sight.forget()
             self.renew()
-        heard = ((line.get("t", self.world.t), clean(line["text"])) for line in told)
+        heard = ((line.get("t", self.world.t), words.clean(line["text"])) for line in told)
         self._lines = [*self._lines, *heard][-400:]
         if not self.calm:
             self.sight.flash(stage.heard, now)
@@ -244,7 +224,9 @@ class SandboxApp(FullScreenApp):
         if width and height:
             hand = self.pointer
             self.canvas.show(self.sight.draw(width, height, now, pointer=hand.shown, aim=hand.aim))
-        self.head.show([head(self.world, self.stage.t, self._state(), self.stage.pace, self._room.width)])
+        self.head.show(
+            [words.head(self.world, self.stage.t, self._state(), self.stage.pace, self._room.width)]
+        )
 
     def _state(self) -> str:
         if self.pointer.aim is not None:
@@ -264,13 +246,12 @@ class SandboxApp(FullScreenApp):
         if self.panel.display:
             width, height = self.panel.size
             rule = "│ " if width > 2 else ""
-            then = None if self.stage.at is None else self.stage.frame()
             room = width - len(rule) - 1
-            lines = panel(self.world, self._parameters(), room, height, then) if height else []
+            lines = words.panel(self.stage, self._parameters(), room, height) if height else []
             lines += [((" ", ""),)] * (height - len(lines))
             self.panel.show([((rule, "dim"), *line) for line in lines])
         text = self.message or self.pointer.status()
-        said = wrapped(text, max(10, self._room.width - 2))[: self._below]
+        said = words.wrapped(text, max(10, self._room.width - 2))[: self._below]
         if self.keys.styles.height is None or self.keys.styles.height.value != len(said):
             # A longer sentence takes its lines from the events: the picture keeps its size.
             self.keys.styles.height, self.events.styles.height = len(said), self._below - len(said)
@@ -280,13 +261,13 @@ class SandboxApp(FullScreenApp):
         else:
             paused = self.world.paused if self.stage.at is None else not self.stage.way
             past, compared = self.stage.at is not None, self.experiment.stage == "done"
-            self.keys.show([keys_line(self._room.width, paused=paused, past=past, compared=compared)])
+            self.keys.show([words.keys_line(self._room.width, paused=paused, past=past, compared=compared)])
 
-    def _told(self, width: int, height: int) -> list[Line]:
+    def _told(self, width: int, height: int) -> list[words.Line]:
         """The latest events before the time that is shown, whole ones, newest at the bottom."""
-        lines: list[Line] = []
+        lines: list[words.Line] = []
         for text in reversed([text for t, text in self._lines if t <= self.stage.t]):
-            pieces = wrapped(text, max(10, width - 3))
+            pieces = words.wrapped(text, max(10, width - 3))
             if lines and len(lines) + len(pieces) > height:
                 break
             lines[:0] = [(((" " if i == 0 else "   ") + piece, ""),) for i, piece in enumerate(pieces)]
@@ -297,14 +278,16 @@ class SandboxApp(FullScreenApp):
         self._read_at = self._drawn_at = -1.0
 
     def say(self, message: str) -> None:
-        super().say(clean(message))
+        super().say(words.clean(message))
         self._read_at = -1.0
 
     def _parameters(self) -> list[tuple[str, str]]:
         """The scene's own numbers, in words."""
         values = self.stage.chosen.parameters
         units = {one.name: one.unit.removesuffix("1") for one in self.stage.chosen.scene.parameter}
-        return [(clean(name), clean(f"{values[name]:.4g} {unit}")) for name, unit in units.items()]
+        return [
+            (words.clean(name), words.clean(f"{values[name]:.4g} {unit}")) for name, unit in units.items()
+        ]
 
     # -- asking ----------------------------------------------------------------------------------
 
@@ -316,7 +299,7 @@ class SandboxApp(FullScreenApp):
             self.say("This scene does not ask for a number.")
             return
         if self.experiment.stage == "done" and result is not None:
-            page = comparison(result, scene.after)
+            page = asking.comparison(result, scene.after)
             hint = "Escape: back   r: again   p: guess"
 
             def read(key: str | None) -> None:
@@ -325,7 +308,9 @@ class SandboxApp(FullScreenApp):
                 elif key == "p":
                     self._ask(asked.unit)
 
-            self.push_screen(PageOverlay("Predicted, run, compared", page, keys=("r", "p"), hint=hint), read)
+            self.push_screen(
+                asking.PageOverlay("Predicted, run, compared", page, keys=("r", "p"), hint=hint), read
+            )
         else:
             self._ask(asked.unit)
 
@@ -342,11 +327,11 @@ class SandboxApp(FullScreenApp):
             return guess
 
         # The question and no more: what is said of the scene stands in its help.
-        overlay = LineOverlay(
+        overlay = asking.LineOverlay(
             "Before it runs: your guess",
-            [(clean(self.experiment.question), "")],
+            [(words.clean(self.experiment.question), "")],
             guessed,
-            wanted=f"a number in {clean(unit)}",
+            wanted=f"a number in {words.clean(unit)}",
             below="Enter: run, compare   Escape: back",
             calm=self.calm,
         )
@@ -365,7 +350,7 @@ class SandboxApp(FullScreenApp):
         if self.stage.at is None:
             self.pointer.drop()
         current, played = self.stage.chosen.scene.id, self.desk.played
-        gallery = Gallery(scenes(), played, current, colour=self.in_colour, calm=self.calm)
+        gallery = asking.Gallery(scenes(), played, current, colour=self.in_colour, calm=self.calm)
         self.push_screen(gallery, chosen)
 
     def action_change(self) -> None:
@@ -373,7 +358,7 @@ class SandboxApp(FullScreenApp):
         scene, near = self.stage.chosen.scene, self.pointer.near()
         page: list[str | tuple[str, str]] = [("This scene's", "")]
         for one, (name, text) in zip(scene.parameter, self._parameters(), strict=True):
-            page.append((name, f"{text} ({one.low:g} to {one.high:g}): {clean(one.meaning)}"))
+            page.append((name, f"{text} ({one.low:g} to {one.high:g}): {words.clean(one.meaning)}"))
         page += [] if scene.parameter else ["It has none of its own."]
         if near is not None:
             page += ["", (f"Of {near}", "")]
@@ -383,7 +368,7 @@ class SandboxApp(FullScreenApp):
             ]
         page += ["", "mine: the scene as a file of your own.", ""]
 
-        overlay = LineOverlay(
+        overlay = asking.LineOverlay(
             "Change a number",
             page,
             partial(self._change, near=near),
@@ -414,12 +399,12 @@ class SandboxApp(FullScreenApp):
         return f"{name}: {value:g}"
 
     def action_help(self) -> None:
-        pages = help_pages(self.stage.chosen.scene, wheels="left" in self.world.settings)
-        self.push_screen(PageOverlay("Keys, and this scene", pages))
+        pages = asking.help_pages(self.stage.chosen.scene, wheels="left" in self.world.settings)
+        self.push_screen(asking.PageOverlay("Keys, and this scene", pages))
 
     def action_events(self) -> None:
         page = [text for _, text in self._lines] or ["Nothing happened yet."]
-        self.push_screen(PageOverlay("What happened", page, at_end=True))
+        self.push_screen(asking.PageOverlay("What happened", page, at_end=True))
 
     # -- keys ------------------------------------------------------------------------------------
 
@@ -453,8 +438,9 @@ class SandboxApp(FullScreenApp):
         self._attempt(lambda: self.stage.act("reset"))
         self.say("From the start.")
 
-    def action_aim(self) -> None:
-        self._attempt(self.pointer.aim_at)
+    def action_pointer(self, what: str, *given: Any) -> None:
+        """What a pointer does by itself, by the name of its method."""
+        self._attempt(lambda: getattr(self.pointer, what)(*given))
 
     def action_near(self, what: str) -> None:
         name = self.pointer.near()
@@ -494,7 +480,7 @@ class SandboxApp(FullScreenApp):
 
     def action_speed(self, factor: float) -> None:
         self.world.speed = min(_FASTEST, max(_SLOWEST, self.world.speed * factor))
-        self.say(f"Time passes at {speed_in_words(self.world.speed)}.")
+        self.say(f"Time passes at {words.speed_in_words(self.world.speed)}.")
 
     def action_notch(self, key: str, way: int) -> None:
         spec = SETTINGS[key]
@@ -509,17 +495,11 @@ class SandboxApp(FullScreenApp):
         value = float(round(value)) if spec.whole else round(value, 9)
         value = min(spec.high, max(spec.low, value))
         self._attempt(lambda: self.stage.act("set", key, value))
-        self.say(f"{KEYS[key][2]}: {setting(key, value)} ({spec.meaning})")
-
-    def action_spawn(self, shape: str) -> None:
-        self._attempt(lambda: self.pointer.spawn(shape))
+        self.say(f"{words.KEYS[key][2]}: {words.setting(key, value)} ({spec.meaning})")
 
     def action_take(self) -> None:
         """Grab the body near the keyboard's pointer, or let it go; of the past, go on from here."""
-        if self.stage.at is not None:
-            self._attempt(self.stage.go_on)
-        else:
-            self._attempt(self.pointer.toggle)
+        self._attempt(self.pointer.toggle if self.stage.at is None else self.stage.go_on)
 
     def action_point(self, dx: int, dy: int) -> None:
         """Move the keyboard's pointer by this many cells; drive what has wheels."""

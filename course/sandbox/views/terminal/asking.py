@@ -160,16 +160,8 @@ class Gallery(Overlay[str]):
 class PageOverlay(TextOverlay):
     BINDINGS: ClassVar[list[Any]] = [Binding("l", "leave", show=False)]
 
-    def __init__(
-        self,
-        title: str,
-        page: Page,
-        keys: Sequence[str] = (),
-        hint: str = "Escape: back",
-        *,
-        at_end: bool = False,
-    ) -> None:
-        super().__init__(title, [_shaped(piece) for piece in page], keys, hint, at_end=at_end)
+    def __init__(self, title: str, page: Page, **more: Any) -> None:
+        super().__init__(title, [_shaped(piece) for piece in page], **more)
         #: Everything on the page.
         self.words = "\n".join(piece if isinstance(piece, str) else " ".join(piece) for piece in page)
 

@@ -154,13 +154,12 @@ class Pointer:
         if self._stage.world.paused:
             # A hand cannot pull while time stands: it carries.
             self.placing = self.near()
-            if self.placing is None:
-                return "Nothing to hold there. Right button or c: a new ball, b: a new box."
-            page = command("sandbox", "play", self._stage.chosen.scene.id, "--web").strip("`")
-            return f"{self.placing} is carried, cell by cell; by eye it goes in the page: {page}"
-        if self._stage.act("grab", *self._place(), self.reach) is None:
-            return "Nothing to hold there. Right button or c: a new ball, b: a new box."
-        return None
+            if self.placing is not None:
+                page = command("sandbox", "play", self._stage.chosen.scene.id, "--web").strip("`")
+                return f"{self.placing} is carried, cell by cell; by eye it goes in the page: {page}"
+        elif self._stage.act("grab", *self._place(), self.reach) is not None:
+            return None
+        return "Nothing to hold there. Right button or c: a new ball, b: a new box."
 
     def _follow(self) -> None:
         x, y = self._place()
@@ -290,11 +289,8 @@ class Sight:
         return not (free & (x > -size) & (x < wide + size) & (y > -size) & (y < high + size)).any()
 
     def _shot(self) -> tuple[Snapshot, tuple[Part, ...]]:
-        stage = self._stage
-        if stage.at is None:
-            return stage.world.snapshot(), stage.world.parts
-        kept = stage.frame()
-        return shot_of(kept), stage.parts(kept)
+        shown = self._stage.frame()
+        return shot_of(shown), self._stage.parts(shown)
 
     def _dots(self) -> Floats:
         """A path, and where bodies were at this time of the run before; (k, 2)."""

@@ -2,6 +2,7 @@
 
 import math
 import re
+import textwrap
 from collections.abc import Sequence
 from itertools import zip_longest
 
@@ -13,10 +14,11 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from course.sandbox.runs.tape import Frame, account_of
+from course.sandbox.runs.tape import SAMPLED, account_of
 from course.sandbox.scene.rules import SETTINGS
+from course.sandbox.views.stage import Stage
 from course.sandbox.views.terminal.picture import Cells
-from course.sandbox.world.accounts import SAMPLED, Receipt
+from course.sandbox.world.accounts import Receipt
 from course.sandbox.world.engine import Floats
 from course.sandbox.world.world import World
 
@@ -102,14 +104,7 @@ def bars(values: Floats, width: int, low: float, span: float, height: int = 1) -
 
 def wrapped(text: str, width: int) -> list[str]:
     """A text in lines that fit; a word that does not is cut."""
-    lines: list[str] = [""]
-    for word in clean(text).split(" "):
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
-            lines.append("")
-        lines[-1] += (" " if lines[-1] else "") + word
-        while len(lines[-1]) > width > 0:
-            lines[-1:] = [lines[-1][:width], lines[-1][width:]]
-    return lines
+    return textwrap.wrap(clean(text), width, break_on_hyphens=False) or [""]
 
 
 def head(world: World, t: float, state: str, pace: float, width: int) -> Line:
@@ -157,22 +152,18 @@ def keys_line(width: int, *, paused: bool, past: bool, compared: bool = False) -
     return tuple(pieces)
 
 
-def panel(
-    world: World, parameters: Sequence[tuple[str, str]], width: int, height: int, past: Frame | None = None
-) -> list[Line]:
-    """Energy, momentum and settings, for a column beside the picture.
+def panel(stage: Stage, parameters: Sequence[tuple[str, str]], width: int, height: int) -> list[Line]:
+    """Energy and momentum at the time that is shown, and settings, for a column beside the picture.
 
     Args:
         parameters: the scene's own, with their values.
         width, height: of the column, in cells.
-        past: the frame of this run that is looked at; None for now.
     """
-    rows = np.array(world.samples()).reshape(-1, len(SAMPLED))
+    world = stage.world
     receipt, momentum = world.receipt, world.momentum
-    if past is not None:
-        rows = rows[rows[:, 0] <= past[2] + 1e-6]
-        receipt, momentum = account_of(past, receipt.start)
-    history = dict(zip(SAMPLED, rows.T, strict=True))
+    if stage.at is not None:
+        receipt, momentum = account_of(stage.frame(), receipt.start)
+    history = dict(zip(SAMPLED, stage.tape.samples(until=stage.t).T, strict=True))
     settings = _settings(world, parameters, width)
     tall = max(1, min(4, (height - 5 - len(settings) - 3) // 8))
     lines = [*_energy(history, receipt, width, tall), *_momentum(history, momentum, width, tall)]
@@ -195,7 +186,8 @@ def _energy(history: dict[str, Floats], receipt: Receipt, width: int, tall: int)
     series = {name: history[name] for name, _, _ in drawn}
     had = receipt.start + receipt.given
     scale = max(abs(had), *(abs(getattr(receipt, name)) for name in series), 1e-12)
-    span = max(max((float(np.ptp(v)) for v in series.values() if len(v)), default=0.0), 1e-9 * scale)
+    # Samples have seven digits: what is smaller than that is no change.
+    span = max(max((float(np.ptp(v)) for v in series.values() if len(v)), default=0.0), 1e-6 * scale)
     lines: list[Line] = [(("Energy in J", "bold"),)]
     for name, label, colour in drawn:
         values = series[name]
@@ -216,7 +208,7 @@ def _momentum(
         # Angular momentum has a unit and a size of its own; the two others share theirs.
         peers = series[2:] if label == "turning" else series[:2]
         largest = max((float(np.abs(v).max()) for v in peers if len(v)), default=0.0)
-        span = max(max((float(np.ptp(v)) for v in peers if len(v)), default=0.0), 1e-9 * largest, 1e-12)
+        span = max(max((float(np.ptp(v)) for v in peers if len(v)), default=0.0), 1e-6 * largest, 1e-12)
         lines += _curve(label, values, value, scale, span, width, tall, colour)
     return lines
 

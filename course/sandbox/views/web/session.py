@@ -6,7 +6,6 @@ The state lives here, so a page can be reloaded at any time. Time passes only wh
 import asyncio
 import contextlib
 import functools
-import math
 import operator
 from collections import deque
 from collections.abc import Callable
@@ -142,17 +141,16 @@ class Allowance:
 
 
 def past(stage: Stage) -> bytes:
-    """The past, for plots in a page that opened later: fifteen seconds, at 60 rows a second.
+    """The past, for plots in a page that opened later: at most 900 rows, 60 a second or more.
 
     3, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
     and py. A first number of 2 says that these rows come after what was sent before.
     """
-    return _rows(3.0, stage.world.samples()[-900:])
+    return _rows(3.0, stage.tape.samples()[-900:])
 
 
-def _rows(kind: float, rows: list[list[float]]) -> bytes:
-    table = np.array(rows, dtype=np.float64).reshape(len(rows), -1)[:, :_PAST]
-    return _packed(np.concatenate([np.array([kind, len(rows), _PAST]), table.ravel()]))
+def _rows(kind: float, rows: Frame) -> bytes:
+    return _packed(np.concatenate([np.array([kind, len(rows), _PAST]), rows[:, :_PAST].ravel()]))
 
 
 def _packed(numbers: Floats | Frame) -> bytes:
@@ -193,7 +191,7 @@ class Page:
         self.allowance = Allowance(now)
         self._texts: deque[str | bytes] = deque()
         self._frames: dict[int, bytes] = {}
-        self._rows: list[list[float]] = []
+        self._rows: list[Frame] = []
         self._news = asyncio.Event()
 
     def tell(self, message: str | bytes) -> None:
@@ -221,9 +219,9 @@ class Page:
         if self._frames:
             return self._frames.pop(next(iter(self._frames)))
         rows, self._rows = self._rows, []
-        return _rows(2.0, rows) if rows else None
+        return _rows(2.0, np.array(rows)) if rows else None
 
-    def add(self, rows: list[list[float]]) -> None:
+    def add(self, rows: Frame) -> None:
         """Rows for the plots, which go out together when the page has time for them."""
         self._rows = [*self._rows, *rows][-_MOST_ROWS:]
         self._news.set()
@@ -258,33 +256,24 @@ class Session:
         clock: Callable[[], float] = perf_counter,
     ) -> None:
         self.desk = desk or Desk()
-        self.gallery = stage is None
-        self.stage = stage or self.desk.stage(scenes()[0].id)
-        self.stage.world.paused = self.gallery
-        if stage is not None:
-            self.desk.opens(stage)
         self.pages: list[Page] = []
         self._clock = clock
-        self._holder: Page | None = None
         self._wake = asyncio.Event()
-        self._seen: tuple[Any, ...] = ()
         self._told: dict[str, Any] = {}
-        self._version = self._cast_of_ghost = -1
-        self._anew = self.stage.anew
-        self._sent = -math.inf
-        self._marked = 0
-        self._ghost = False
         self._cards: dict[str, tuple[str, bytes]] = {}
         self._wanted: deque[tuple[Page, str]] = deque()
         self._film: tuple[Page, Filming] | None = None
+        self._put_on(stage or self.desk.stage(scenes()[0].id), gallery=stage is None)
+        self.stage.world.paused = self.gallery
 
-    def _put_on(self, stage: Stage) -> None:
+    def _put_on(self, stage: Stage, *, gallery: bool = False) -> None:
         """Play this from now on, in place."""
-        self._holder = None
-        self.gallery = False
-        self.stage = stage
-        self.desk.opens(stage)
-        self._ghost, self._cast_of_ghost, self._version, self._seen = False, -1, stage.world.version, ()
+        self.stage, self.gallery = stage, gallery
+        if not gallery:
+            self.desk.opens(stage)
+        self._holder: Page | None = None
+        self._seen: tuple[Any, ...] = ()
+        self._ghost, self._cast_of_ghost, self._version = False, -1, stage.world.version
         self._anew, self._sent, self._marked = stage.anew, stage.world.t, len(stage.tape.marks)
         for page in self.pages:
             self._introduce(page)
@@ -339,8 +328,6 @@ class Session:
     # -- requests --------------------------------------------------------------------------------
 
     def _do(self, page: Page, what: str, given: tuple[Any, ...]) -> None:
-        if any(isinstance(one, float) and not math.isfinite(one) for one in given):
-            raise UsageError("A finite number, please.", code="bad_parameter")
         own = getattr(self, f"_do_{what}", None)
         if own is not None:
             own(page, *given)
@@ -434,7 +421,7 @@ class Session:
             cast, places, joints = preview(choose(name))
             head = np.array([_CARD, len(places), len(cast), joints.shape[1]])
             numbers = np.concatenate([head, places.ravel(), joints.ravel()])
-            card = {"type": "card", "id": name, "bodies": [_body(part) for part in cast]}
+            card = {"type": "card", "id": name, "bodies": cast}
             self._cards[name] = _json(card), _packed(numbers)
         if page in self.pages:
             text, data = self._cards[name]
@@ -497,9 +484,8 @@ class Session:
             self._version = stage.world.version
             self._tell(self._bodies())
         self._tell_marks()
-        rows = stage.world.samples(self._sent) if stage.at is None and not stage.working else []
-        if rows:
-            self._sent = rows[-1][0]
+        if stage.at is None and not stage.working and stage.tape.times[-1] > self._sent:
+            rows, self._sent = stage.tape.samples(self._sent), stage.tape.times[-1]
             for page in self.pages:
                 page.add(rows)
         self._tell_film()
@@ -595,7 +581,7 @@ class Session:
             "type": "bodies",
             "world": number,
             "version": self.stage.world.version if version is None else version,
-            "bodies": [_body(part) for part in (self.stage.world.parts if parts is None else parts)],
+            "bodies": self.stage.world.parts if parts is None else parts,
         }
 
     def _introduction(self) -> dict[str, Any]:
@@ -626,21 +612,6 @@ class Session:
             "events": stage.narrator.told(),
             "status": self._status(),
         }
-
-
-def _body(part: Part) -> dict[str, Any]:
-    return {
-        "name": part.name,
-        "shape": part.shape,
-        "outline": part.outline,
-        "radius": part.radius,
-        "fixed": part.fixed,
-        "colour": part.colour,
-        "mass": part.mass,
-        "restitution": part.restitution,
-        "friction": part.friction,
-        "track": part.wheels.track if part.wheels else 0.0,
-    }
 
 
 def _json(message: dict[str, Any]) -> str:

@@ -109,7 +109,7 @@ export class Painter {
     const [cos, sin] = [Math.cos(angle) * s, Math.sin(angle) * s];
     c.setTransform(cos, -sin, -sin, -cos, ox + x * s, oy - y * s);
     const chosen = body.name === this.view.chosen;
-    if (body.track) this.wheels(c, body);
+    if (body.wheels) this.wheels(c, body);
     if (body.shape === "segment") {
       c.lineCap = "round";
       c.lineWidth = Math.max(2 * body.radius, 2 * this.pixel);
@@ -151,9 +151,9 @@ export class Painter {
 
   wheels(c, body) {
     const xs = body.outline.map(([px]) => px);
-    const [long, wide] = [(Math.max(...xs) - Math.min(...xs)) * 0.4, body.track * 0.18];
+    const [long, wide] = [(Math.max(...xs) - Math.min(...xs)) * 0.4, body.wheels.track * 0.18];
     c.fillStyle = this.colour("--ink");
-    for (const side of [-1, 1]) c.fillRect(-long / 2, (side * body.track) / 2 - wide / 2 + side * wide * 0.4, long, wide);
+    for (const side of [-1, 1]) c.fillRect(-long / 2, (side * body.wheels.track) / 2 - wide / 2 + side * wide * 0.4, long, wide);
     c.strokeStyle = this.colour("--ink");
     c.lineWidth = 2 * this.pixel;
     c.beginPath();

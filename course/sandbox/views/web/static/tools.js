@@ -265,7 +265,7 @@ export class Tools {
   arrow(dx, dy, times) {
     const { view } = this;
     const [left, bottom, right, top] = view.scene.view;
-    const wheeled = view.bodies.find((body) => body.track && (!view.chosen || body.name === view.chosen));
+    const wheeled = view.bodies.find((body) => body.wheels && (!view.chosen || body.name === view.chosen));
     if (wheeled) {
       const { left: l, right: r } = view.state.settings;
       const set = (key, value) => view.send({ do: "set", key, value: Math.min(5, Math.max(-5, Number(value.toFixed(3)))) });

@@ -1,8 +1,11 @@
 """The command line, run in this process on the miniature course, with a stand-in for the sandbox."""
 
 import functools
+import io
 import json
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -15,7 +18,10 @@ import msgspec
 import pytest
 
 from course.cli.frame import app, registry
+from course.cli.frame.console import Console, Settings
+from course.cli.frame.here import Here
 from course.cli.frame.replies import schema_of
+from course.cli.loop import Watcher
 from course.handed_in import attempts
 from course.progress.store import Store
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict
@@ -29,13 +35,59 @@ needs_jupyterlab = pytest.mark.skipif(
 )
 
 
-@dataclass
-class Ran:
-    """How a command line ended, and what it said."""
+class Terminal(io.StringIO):
+    """Somebody is there."""
 
-    code: int
+    encoding = "utf-8"
+
+    def isatty(self):
+        return True
+
+
+def uncoloured(text):
+    return re.sub(r"\x1b\[[0-9;]*m", "", text)
+
+
+@dataclass
+class Said:
+    """A text, and what a test asks of it; whatever fails shows the whole of it."""
+
     out: str
+
+    @property
+    def words(self):
+        """All of it, however the lines are wrapped."""
+        return " ".join(self.out.split())
+
+    @property
+    def rows(self):
+        """Its lines, without what colours them."""
+        return uncoloured(self.out).splitlines()
+
+    def says(self, *words):
+        """Each of these stands in it."""
+        assert not [one for one in words if one not in self.out], self
+        return self
+
+    def says_in_order(self, *words):
+        """Each of these stands in it, behind the one before."""
+        self.says(*words)
+        places = [self.out.index(one) for one in words]
+        assert places == sorted(places), self
+        return self
+
+    def lacks(self, *words):
+        """None of these stands in it."""
+        assert not [one for one in words if one in self.out], self
+        return self
+
+
+@dataclass
+class Ran(Said):
+    """What a command line said, on standard output in the first place, and how it ended."""
+
     err: str
+    code: int
 
     @property
     def json(self):
@@ -43,19 +95,29 @@ class Ran:
         return json.loads(self.out)
 
     @property
+    def last(self):
+        """The last of several objects on standard output, a line each."""
+        return json.loads(self.out.splitlines()[-1])
+
+    @property
     def error(self):
         """Exit code and the error's own code, of a line with ``--json``."""
         return self.code, self.json["error"]["code"]
 
+    def warns(self, *words):
+        """Each of these stands on standard error."""
+        assert not [one for one in words if one not in self.err], self
+        return self
+
     def ends(self, code, *said):
         """It ended with this exit code and said each of these, on standard output."""
-        assert (self.code, [words for words in said if words not in self.out]) == (code, []), self
-        return self
+        assert self.code == code, self
+        return self.says(*said)
 
     def refuses(self, code, *said):
         """It ended with this exit code and said each of these, on standard error."""
-        assert (self.code, [words for words in said if words not in self.err]) == (code, []), self
-        return self
+        assert self.code == code, self
+        return self.warns(*said)
 
 
 class FakeSession:
@@ -176,7 +238,7 @@ def loaded(name, entry, mode):
 
 @pytest.fixture
 def course(monkeypatch, tmp_path, capsys):
-    """Run a command line in ``tmp_path`` on the miniature course; gives code, out and err.
+    """Run a line as it is typed, and more words as they are, in ``tmp_path`` on the miniature course.
 
     A fault of the course ends a test that has not said with ``course.faulty`` that it makes one.
     """
@@ -189,14 +251,15 @@ def course(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(attempts, "open_session", lambda exercise, catalog: FakeSession(exercise))
     monkeypatch.setattr(registry, "_load", loaded)
 
-    def run(*words):
+    def run(line="", *more):
+        words = (*shlex.split(line), *map(str, more))
         capsys.readouterr()
         code = app.run(words)
         captured = capsys.readouterr()
         assert run.faulty or "A fault in the course" not in captured.err, captured.err
         if "--json" in words:
             keeps_its_schema(captured.out, code)
-        return Ran(code, captured.out, captured.err)
+        return Ran(captured.out, captured.err, code)
 
     run.faulty = False
     return run
@@ -247,10 +310,53 @@ def write(workspace):
 
 
 @pytest.fixture
-def students_content(course, monkeypatch, tmp_path):
-    """The miniature course as a student has it: no solutions, no graders."""
-    copy = tmp_path / "students"
-    for name in ("exercises", "lessons"):
-        shutil.copytree(MINI_COURSE / name, copy / name)
+def watcher(workspace):
+    """What waits for saves of ``doubling``."""
+    here = Here.load()
+    console = Console(Settings(), stdout=io.StringIO(), stderr=io.StringIO())
+    return Watcher(console=console, here=here, exercise=here.exercise("doubling"))
+
+
+@pytest.fixture
+def session(watcher):
+    """Its session, warm."""
+    return attempts.open_session(watcher.exercise, watcher.here.catalog)
+
+
+@pytest.fixture
+def real(course, tmp_path, monkeypatch):
+    """A workspace of the real course; the current folder."""
+    monkeypatch.delenv("COURSE_CONTENT")
+    course("init .").ends(0)
+    return tmp_path
+
+
+@pytest.fixture
+def person(course, monkeypatch):
+    """Somebody is there and can be asked, unless it is a script that asks."""
+    monkeypatch.setattr(Console, "interactive", property(lambda self: not self.json))
+
+
+@pytest.fixture
+def content(course, monkeypatch, tmp_path_factory):
+    """A copy of the miniature course, in force; it may be changed."""
+    copy = tmp_path_factory.mktemp("content") / "mini"
+    shutil.copytree(MINI_COURSE, copy)
     monkeypatch.setenv("COURSE_CONTENT", str(copy))
     return copy
+
+
+@pytest.fixture
+def colourless(course, monkeypatch):
+    """A terminal that shows tables and pages, and no colours."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("NO_COLOR", "1")
+
+
+@pytest.fixture
+def students_content(content):
+    """The miniature course as a student has it: no solutions, no graders."""
+    for path in content.iterdir():
+        if path.name not in {"exercises", "lessons"}:
+            shutil.rmtree(path)
+    return content

@@ -1,7 +1,9 @@
 """``course engines``: what is here, what is missing, and a comparison that says where each number is from."""
 
+import contextlib
 import csv
 import re
+from types import SimpleNamespace
 
 import pytest
 
@@ -38,15 +40,16 @@ def bare(course, monkeypatch, measured):
 
 
 def test_list_names_engines_with_licence_and_the_command_that_installs_them(bare):
-    ran = bare("engines", "list", "--plain")
-    assert ran.code == 0
-    assert "pymunk: pymunk (2-D); pymunk 7.3.1; MIT; " in ran.out
-    assert "mujoco: MuJoCo; not installed; Apache-2.0; " in ran.out
-    assert f"not installed: {MISSING}" in ran.out
-    assert "pybullet has no wheel for Python 3.13 on Linux x86_64." in ran.out
+    ran = bare("engines list --plain").ends(
+        0,
+        "pymunk: pymunk (2-D); pymunk 7.3.1; MIT; ",
+        "mujoco: MuJoCo; not installed; Apache-2.0; ",
+        f"not installed: {MISSING}",
+        "pybullet has no wheel for Python 3.13 on Linux x86_64.",
+    )
     for name in SCENARIOS:
         assert re.search(rf"^\s+{name}: ", ran.out, re.MULTILINE)
-    body = bare("engines", "list", "--json").json
+    body = bare("engines list --json").json
     assert body["schema"] == "course.engines-list/1"
     engines = {engine["id"]: engine for engine in body["engines"]}
     assert list(engines) == list(ENGINES)
@@ -57,13 +60,14 @@ def test_list_names_engines_with_licence_and_the_command_that_installs_them(bare
 
 
 def test_without_extras_pymunk_is_measured_and_the_rest_is_labelled_reference(bare):
-    ran = bare("engines", "compare", "--scenario", "bounce", "--plain")
-    assert ran.code == 0
-    assert "phases of a step. Truth: 0.25 m." in ran.out
-    assert "Engine: pymunk (2-D); As it comes: 0.2454 m (0.239 to 0.252); Well set" in ran.out
+    ran = bare("engines compare --scenario bounce --plain").ends(
+        0,
+        "phases of a step. Truth: 0.25 m.",
+        "Engine: pymunk (2-D); As it comes: 0.2454 m (0.239 to 0.252); Well set",
+        f"MuJoCo: not installed: {MISSING}",
+        f"Rows marked reference were not measured here: {reference.load().label}.",
+    )
     assert re.search(r"Engine: MuJoCo, reference; As it comes: 0.0000 m; Well set: 0.2\d+ m", ran.out)
-    assert f"MuJoCo: not installed: {MISSING}" in ran.out
-    assert f"Rows marked reference were not measured here: {reference.load().label}." in ran.out
     assert not re.search(r"reference; .*best", ran.out)
 
 
@@ -71,31 +75,26 @@ def test_the_rows_of_a_scenario_say_the_best_in_words(bare, monkeypatch):
     monkeypatch.setattr(comparing, "availability", lambda info: Availability("1"))
     replies = {"pymunk": -0.5, "mujoco": 0.25, "ode": 3.0}
 
-    class Stand:
-        def __init__(self, engine):
-            self.engine = engine
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            return None
-
-        def ask(self, job, seconds=0):
-            if self.engine == "dart":
+    @contextlib.contextmanager
+    def stand_in(engine):
+        def ask(job, seconds=0):
+            if engine == "dart":
                 return {"status": "crash", "message": "It was ended by SIGABRT."}
-            value = replies.get(self.engine, 5.0)
+            value = replies.get(engine, 5.0)
             if job["setting"] != "tuned":
                 return {"status": "ok", "value": value, "details": {}, "options": {}, "why": []}
             return {"status": "ok", "value": value + 0.1, "details": {}, "options": {"a": 1}, "why": ["b"]}
 
-    monkeypatch.setattr(comparing, "EngineProcess", Stand)
-    ran = bare("engines", "compare", "--scenario", "clash", "--plain")
-    assert ran.code == 0
-    assert "Engine: MuJoCo; As it comes: +0.250 % best; Well set: +0.350 % best\n" in ran.out
-    assert "Engine: pymunk (2-D); As it comes: -0.500 %; Well set: -0.400 %\n" in ran.out
-    assert "Engine: DART; As it comes: crashed" in ran.out
-    assert "DART crashed in clash (default): It was ended by SIGABRT." in ran.out
+        yield SimpleNamespace(ask=ask)
+
+    monkeypatch.setattr(comparing, "EngineProcess", stand_in)
+    bare("engines compare --scenario clash --plain").ends(
+        0,
+        "Engine: MuJoCo; As it comes: +0.250 % best; Well set: +0.350 % best\n",
+        "Engine: pymunk (2-D); As it comes: -0.500 %; Well set: -0.400 %\n",
+        "Engine: DART; As it comes: crashed",
+        "DART crashed in clash (default): It was ended by SIGABRT.",
+    )
 
 
 def row(engine, value, *samples, origin="measured"):
@@ -106,42 +105,37 @@ def row(engine, value, *samples, origin="measured"):
 
 
 def test_nothing_that_can_run_is_exit_code_4_with_the_reference_shown(bare):
-    bare("engines", "compare", "--engine", "mujoco", "--scenario", "bounce", "--plain").ends(
-        4, "MuJoCo, reference", "No engine could be run on this machine."
-    )
-    body = bare("engines", "compare", "--engine", "mujoco", "--scenario", "bounce", "--json").json
-    assert (body["schema"], body["ok"], body["exit_code"]) == ("course.engines/1", False, 4)
+    line = "engines compare --engine mujoco --scenario bounce"
+    bare(line, "--plain").ends(4, "MuJoCo, reference", "No engine could be run on this machine.")
+    assert bare(line, "--json").ends(4).json["schema"] == "course.engines/1"
 
 
 def test_compare_as_json_holds_every_number_and_where_it_is_from(bare, monkeypatch, tmp_path):
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "cache"))
     line = "engines compare --scenario bounce --engine pymunk --engine mujoco --json"
-    words = line.split()
-    ran = bare(*words)
+    ran = bare(line)
     assert "A bounce" in ran.err, "words go to the other stream"
     body, rows = ran.json, ran.json["rows"]
-    assert [(row["engine"], row["origin"], row["status"]) for row in rows] == [
-        ("pymunk", "measured", "ok"),
+    each = (
         ("pymunk", "measured", "ok"),
         ("mujoco", "measured", "not_installed"),
-        ("mujoco", "measured", "not_installed"),
         ("mujoco", "reference", "ok"),
-        ("mujoco", "reference", "ok"),
-    ]
+    )
+    told = [(row["engine"], row["origin"], row["status"]) for row in rows]
+    assert told == [one for one in each for _setting in range(2)]
     assert rows[0]["truth"] == 0.25
     assert rows[0]["error"] == pytest.approx(rows[0]["value"] - 0.25)
     assert rows[1]["options"] == {"collision_slop": 1e-4}
     assert len(rows[1]["why"]) == 1
     assert body["reference"]["measured"] == reference.load().measured
-    assert bare(*words).json["rows"][0]["origin"] == "cached"
-    assert bare(*words, "--fresh").json["rows"][0]["origin"] == "measured"
+    assert bare(line).json["rows"][0]["origin"] == "cached"
+    assert bare(line, "--fresh").json["rows"][0]["origin"] == "measured"
 
 
 def test_steps_are_taken_as_numbers_or_fractions(bare):
-    words = ("engines", "compare", "--engine", "pymunk", "--scenario", "free-fall")
-    body = bare(*words, "--dt", "1/100", "--dt", "0.005", "--json").json
-    assert sorted({row["dt"] for row in body["rows"]}) == [0.005, 0.01]
-    assert "Step: 1/200 s" in bare(*words, "--dt", "1/100", "--dt", "0.005", "--plain").out
+    line = "engines compare --engine pymunk --scenario free-fall --dt 1/100 --dt 0.005"
+    assert {row["dt"] for row in bare(line, "--json").json["rows"]} == {0.005, 0.01}
+    bare(line, "--plain").says("Step: 1/200 s")
 
 
 @pytest.mark.parametrize(
@@ -150,12 +144,12 @@ def test_steps_are_taken_as_numbers_or_fractions(bare):
     + [("--engine=newton", 5, "engine_not_found"), ("--scenario=tea", 5, "scenario_not_found")],
 )
 def test_a_step_that_is_none_and_unknown_names_are_refused(bare, word, code, error):
-    assert bare("engines", "compare", word, "--json").error == (code, error)
+    assert bare("engines compare", word, "--json").error == (code, error)
 
 
 def test_csv_has_a_line_for_every_row_and_every_digit(bare, tmp_path):
-    words = ("engines", "compare", "--engine", "pymunk", "--scenario", "thin-wall", "--scenario", "bounce")
-    ran = bare(*words, "--csv", "all.csv", "--json")
+    words = "engines compare --engine pymunk --scenario thin-wall --scenario bounce"
+    ran = bare(words, "--csv", "all.csv", "--json")
     with (tmp_path / "all.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(ran.json["rows"]) == 4
@@ -164,40 +158,37 @@ def test_csv_has_a_line_for_every_row_and_every_digit(bare, tmp_path):
 
 
 def test_plot_writes_what_the_rows_suffice_for_and_says_what_they_do_not(bare, tmp_path):
-    words = ("engines", "compare", "--engine", "pymunk", "--quick")
-    ran = bare(*words, "--scenario", "free-fall", "--plot", "f.svg", "--json")
+    words = "engines compare --engine pymunk --quick"
+    ran = bare(words, "--scenario", "free-fall", "--plot", "f.svg", "--json")
     assert [plot["path"] for plot in ran.json["plots"]] == [str(tmp_path / "f-steps.svg")]
     assert (tmp_path / "f-steps.svg").read_bytes().startswith(b"<?xml")
-    bare(*words, "--scenario", "bounce", "--plot", "g.png", "--plain").ends(0, "No figure: ")
+    bare(words, "--scenario", "bounce", "--plot", "g.png", "--plain").ends(0, "No figure: ")
     assert not list(tmp_path.glob("g*"))
 
 
 def test_a_file_of_the_wrong_kind_is_refused_before_anything_is_measured(bare, monkeypatch):
     monkeypatch.setattr(comparing, "compare", lambda *_: pytest.fail("measured"))
-    assert bare("engines", "compare", "--plot", "f.gif").code == 2
-    assert bare("engines", "compare", "--csv", "f.txt").code == 2
+    assert bare("engines compare --plot f.gif").code == 2
+    assert bare("engines compare --csv f.txt").code == 2
 
 
 def test_repetitions_show_their_spread_only_where_there_is_one_and_several_runs_their_range(bare):
     line = "engines compare --engine pymunk --scenario bounce --scenario slide"
     words = (*line.split(), "--repeat", "2")
-    ran = bare(*words, "--plain")
-    assert "±" not in ran.out
+    ran = bare(*words, "--plain").lacks("±")
     assert re.search(r"As it comes: 0.2454 m \(0.239 to 0.252\); Well set", ran.out)
     assert re.search(r"Engine: pymunk \(2-D\); As it comes: -6e-13 %; Well set", ran.out)
     rows = {(row["scenario"], row["setting"]): row for row in bare(*words, "--json").json["rows"]}
     assert len(rows["bounce", "default"]["samples"]) == 64
     assert rows["slide", "default"]["samples"] == []
-    assert bare("engines", "compare", "--repeat", "0").code == 2
+    assert bare("engines compare --repeat 0").code == 2
 
 
+@pytest.mark.usefixtures("colourless")
 @pytest.mark.parametrize("columns", [60, 120])
 def test_no_line_is_wider_than_the_window(bare, monkeypatch, columns):
     monkeypatch.setenv("COLUMNS", str(columns))
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("NO_COLOR", "1")
-    out = bare("engines", "compare", "--scenario", "bounce", "--scenario", "mass-ratio").out
-    lines = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in out.splitlines()]
+    lines = bare("engines compare --scenario bounce --scenario mass-ratio").rows
     assert max(map(len, lines)) <= columns
     # In a narrow window a cell may be broken between words, and loses none.
     assert {"2.84,", "reference"} <= {word for line in lines for word in line.split()}

@@ -2,7 +2,6 @@
 
 import io
 import json
-import re
 import sys
 import zipfile
 from datetime import UTC, datetime, timedelta
@@ -12,12 +11,16 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.questions import read_questions
 from course.cli.frame.console import Console
-from course.cli.quiz import screen
+from course.cli.quiz import commands, screen
 from course.errors import IntegrityError, MissingCapabilityError
+from course.grading.quiz import grade_quiz
+from course.progress import store
 from course.progress.store import Store
 from course.quizzing.bank import Bank, mark
+from tests.unit.cli.conftest import Terminal
 
 SEED = 7
+TAKE = f"take --seed {SEED}"
 MARK = "You need 4 right answers out of 5 to pass."
 #: Those that are asked here, however many more the course has.
 ASKED = ("why-simulate", "which-engine", "sim-to-real-gap", "digital-twin", "numerical-integration")
@@ -32,14 +35,10 @@ def questions():
 
 
 @pytest.fixture
-def quiz(course, tmp_path, monkeypatch, questions):
+def quiz(course, real, monkeypatch, questions):
     """Run ``course quiz`` in a workspace of the real course."""
-    monkeypatch.delenv("COURSE_CONTENT")
     monkeypatch.setattr("course.quizzing.bank.read_questions", lambda _: questions)
-    root = tmp_path / "mine"
-    assert course("init", str(root)).code == 0
-    monkeypatch.chdir(root)
-    return lambda *words: course("quiz", *words)
+    return lambda line, *more: course(f"quiz {line}", *more)
 
 
 @pytest.fixture
@@ -47,10 +46,7 @@ def bank(quiz):
     return Bank.of(Catalog())
 
 
-class _Terminal(io.StringIO):
-    def isatty(self):
-        return True
-
+class Typist(Terminal):
     def readline(self):
         line = super().readline()
         if line == f"{CTRL_C}\n":
@@ -63,7 +59,7 @@ def types(monkeypatch):
     """Somebody at a terminal who types these lines and then leaves."""
 
     def typing(*lines):
-        monkeypatch.setattr(sys, "stdin", _Terminal("".join(f"{line}\n" for line in lines)))
+        monkeypatch.setattr(sys, "stdin", Typist("".join(f"{line}\n" for line in lines)))
 
     return typing
 
@@ -71,12 +67,10 @@ def types(monkeypatch):
 @pytest.fixture
 def travel(monkeypatch):
     """Move the clock by whole days."""
-    from course.cli.quiz import commands as command
-    from course.progress import store
 
     def to(days):
         now = datetime.now(UTC) + timedelta(days=days)
-        monkeypatch.setattr(command, "today", lambda: now.astimezone().date())
+        monkeypatch.setattr(commands, "today", lambda: now.astimezone().date())
         monkeypatch.setattr(store, "_now", lambda: now.isoformat(timespec="milliseconds"))
 
     return to
@@ -97,13 +91,17 @@ def save(path, letters, seed=SEED):
     return str(path)
 
 
+@pytest.fixture
+def answered(quiz, bank, tmp_path):
+    """The quiz taken from a file, in which all answers are right but the ``wrong``."""
+    return lambda *wrong, more="": quiz(f"take {more} --answers", save(tmp_path / "a.toml", key(bank, wrong)))
+
+
 def test_a_perfect_attempt_passes_and_numbers_answer_while_other_keys_are_asked_again(quiz, bank, types):
     first, *rest = [str("abcd".index(letter) + 1) for letter in key(bank).values()]
     types("", "e", "5", first, *rest)
-    ran = quiz("take", "--seed", str(SEED))
-    assert ran.code == 0
+    ran = quiz(TAKE).ends(0, "5 of 5 right, 4 needed: passed")
     assert ran.out.startswith(MARK)
-    assert "5 of 5 right, 4 needed: passed" in ran.out
     assert ran.out.count("Your answer: ") == 5 + 3
     assert ran.out.count("Type a to d or 1 to 4") == 1 + 3
     for posed in bank.pose(SEED):
@@ -114,11 +112,9 @@ def test_below_the_mark_every_option_of_what_was_missed_is_explained_on_request(
     wrong = ("why-simulate", "digital-twin")
     letters = key(bank, wrong)
     types(*letters.values())
-    ran = quiz("take", "--seed", str(SEED))
-    assert ran.code == 1
+    ran = quiz(TAKE).ends(1, f"Next: course lesson {bank.pose(SEED, wrong)[0].read}\n")
     assert ran.out.count("3 of 5 right, 4 needed: not passed") == 1
-    assert f"Next: course lesson {bank.pose(SEED, wrong)[0].read}\n" in ran.out
-    whole = quiz("history", "--all").out
+    whole = quiz("history --all").out
     assert whole.count("Read again: course lesson ") == 2
     assert "why-simulate, digital-twin: due" in whole
     for posed in bank.pose(SEED):
@@ -147,22 +143,18 @@ def test_the_result_of_a_quiz_takes_forty_lines_of_eighty_columns_at_most(bank):
 def test_an_attempt_that_was_stopped_goes_on_where_it_was(quiz, bank, types, stop):
     letters = list(key(bank).values())
     types(*letters[:2], *([stop] if stop else []))
-    stopped = quiz("take", "--seed", str(SEED))
-    assert stopped.code == 130
-    assert "Your attempt is kept: `course quiz take` continues it." in stopped.out
+    stopped = quiz(TAKE).ends(130, "Your attempt is kept: `course quiz take` continues it.")
     assert stopped.err.strip().endswith("Interrupted.")
     types(*letters[2:])
-    ran = quiz("take").ends(0, "2 of 5 answered", "Question 3 of 5")
-    assert "Question 2 of 5" not in ran.out
-    assert "5 of 5 right" in ran.out
+    quiz("take").ends(0, "2 of 5 answered", "Question 3 of 5", "5 of 5 right").lacks("Question 2 of 5")
 
 
 def test_what_cannot_be_recorded_is_said_before_the_first_question_and_once(quiz, bank, types, tmp_path):
-    state = tmp_path / "mine" / ".course"
+    state = tmp_path / ".course"
     state.rmdir()
     state.write_text("no folder", encoding="utf-8")
     types(*list(key(bank).values())[:2], "q")
-    ran = quiz("take", "--seed", str(SEED)).ends(130, "Your attempt is not kept.")
+    ran = quiz(TAKE).ends(130, "Your attempt is not kept.")
     assert ran.err.count("This was not recorded: ") == 1
     assert "is kept" not in ran.out
 
@@ -177,7 +169,7 @@ def test_an_attempt_that_is_left_says_which_answers_were_not_recorded(quiz, bank
 
     monkeypatch.setattr(Store, "append", once_full)
     types(*list(key(bank).values())[:3], "q")
-    ran = quiz("take", "--seed", str(SEED))
+    ran = quiz(TAKE)
     ran.ends(130, "continues it, and asks again what could not be recorded (2 answers).")
     assert ran.err.count("This was not recorded: The disk is full.") == 1
 
@@ -186,7 +178,7 @@ def test_an_attempt_that_is_left_says_which_answers_were_not_recorded(quiz, bank
 def test_the_first_answer_of_two_terminals_counts_and_so_does_the_first_end(
     quiz, bank, types, monkeypatch, there
 ):
-    quiz("take", "--questions", "--seed", str(SEED))
+    quiz(f"{TAKE} --questions")
     types("")
     letters, elsewhere = key(bank), key(bank, wrong=ASKED)
     asked, ask = [], screen.ask
@@ -201,83 +193,69 @@ def test_the_first_answer_of_two_terminals_counts_and_so_does_the_first_end(
 
     monkeypatch.setattr(screen, "ask", meanwhile)
     ran = quiz("take")
-    shown = quiz("history", "--json").json["attempts"]
+    shown = quiz("history --json").json["attempts"]
     if there == 5:
-        assert "finished in another terminal: 0 of 5 right" in ran.err
-        assert (ran.code, len(shown), shown[0]["score"]) == (2, 1, 0)
+        ran.refuses(2, "finished in another terminal: 0 of 5 right")
     else:
-        assert "answered in another terminal" in ran.out
-        assert "4 of 5 right" in ran.out
-        assert (ran.code, len(shown), shown[0]["score"]) == (0, 1, 4)
+        ran.ends(0, "answered in another terminal", "4 of 5 right")
+    assert [one["score"] for one in shown] == [0 if there == 5 else 4]
 
 
 def test_an_attempt_that_waits_is_not_given_up_without_a_word(quiz, bank, types):
     letters = list(key(bank).values())
     types(*letters[:2], "q")
-    assert quiz("take", "--seed", str(SEED)).code == 130
-    assert quiz("take", "--questions", "--seed", "11", "--json").json["seed"] == 11
-    assert quiz("take", "--questions", "--json").json["seed"] == SEED, "printing changed nothing"
+    quiz(TAKE).ends(130)
+    assert quiz("take --questions --seed 11 --json").json["seed"] == 11
+    assert quiz("take --questions --json").json["seed"] == SEED, "printing changed nothing"
     types("q")
-    assert f"the one you left (seed {SEED}, 2 of 5 answered) ends here" in quiz("take", "--seed", "12").out
-    assert quiz("take", "--questions", "--json").json["seed"] == 12
+    quiz("take --seed 12").says(f"the one you left (seed {SEED}, 2 of 5 answered) ends here")
+    assert quiz("take --questions --json").json["seed"] == 12
     types(*key(bank, seed=12).values())
     assert quiz("take").code == 0
-    states = [entry["state"] for entry in quiz("history", "--json").json["attempts"]]
+    states = [entry["state"] for entry in quiz("history --json").json["attempts"]]
     assert states == ["left", "finished"]
 
 
 def test_a_crash_between_the_last_answer_and_the_score_loses_nothing(quiz, bank, types, monkeypatch):
-    from course.cli.quiz import commands as command
-
     def fall(*_, **__):
         raise KeyboardInterrupt
 
     types(*key(bank).values())
     with monkeypatch.context() as patch:
-        patch.setattr(command, "_finish", fall)
-        assert quiz("take", "--seed", str(SEED)).code == 130
+        patch.setattr(commands, "_finish", fall)
+        assert quiz(TAKE).code == 130
     types()
-    ran = quiz("take")
-    assert ran.code == 0
-    assert "Your answer: " not in ran.out
-    assert "5 of 5 right" in ran.out
+    assert "Your answer: " not in quiz("take").ends(0, "5 of 5 right").out
 
 
 def test_without_a_terminal_nothing_is_asked(quiz):
-    for words in (("take",), ("take", "--json"), ("take", "--seed", "3")):
-        ran = quiz(*words).refuses(2, "use --answers FILE")
-        assert "Question 1" not in ran.out
-    assert ran.out == ""
-    error = quiz("take", "--json").json
-    assert (error["schema"], error["error"]["code"]) == ("course.quiz/1", "no_terminal")
-    assert quiz("history", "--json").json["attempts"] == []
+    for line in ("take", "take --seed 3"):
+        assert quiz(line).refuses(2, "use --answers FILE").out == ""
+    refused = quiz("take --json").warns("use --answers FILE")
+    assert (refused.error, refused.json["schema"]) == ((2, "no_terminal"), "course.quiz/1")
+    assert quiz("history --json").json["attempts"] == []
 
 
 def test_questions_can_be_printed_and_answered_from_a_file(quiz, bank, tmp_path):
-    asked = quiz("take", "--questions", "--json").json
+    asked = quiz("take --questions --json").json
     assert (asked["schema"], asked["ok"], asked["mark"] + ".") == ("course.quiz-questions/1", True, MARK)
     assert "right" not in json.dumps(asked["questions"][0]["options"])
     assert "explanation" not in json.dumps(asked)
-    assert quiz("take", "--questions", "--json").json["seed"] == asked["seed"]
+    assert quiz("take --questions --json").json["seed"] == asked["seed"]
     text, path = asked["template"], tmp_path / "answers.toml"
     path.write_text(text, encoding="utf-8")
-    quiz("take", "--answers", str(path)).refuses(2, f"{path}:4: 5 answers are missing: why-simulate")
+    quiz("take --answers", path).refuses(2, f"{path}:4: 5 answers are missing: why-simulate")
     for name, letter in key(bank, seed=asked["seed"]).items():
         text = text.replace(f'{name} = ""', f'{name} = "{letter}"')
     path.write_text(text, encoding="utf-8")
-    ran = quiz("take", "--answers", str(path), "--json")
-    assert ran.code == 0
-    assert (ran.json["seed"], ran.json["passed"]) == (asked["seed"], True)
-    assert [entry["state"] for entry in quiz("history", "--json").json["attempts"]] == ["finished"]
+    taken = quiz("take --answers", path, "--json").ends(0).json
+    assert (taken["seed"], taken["passed"]) == (asked["seed"], True)
+    assert [entry["state"] for entry in quiz("history --json").json["attempts"]] == ["finished"]
 
 
-def test_the_answer_of_a_script_has_everything(quiz, bank, tmp_path):
-    path = save(tmp_path / "a.toml", key(bank, ("which-engine",)))
-    ran = quiz("take", "--answers", path, "--json")
-    assert ran.code == 0
-    body = ran.json
-    assert list(body)[:3] == ["schema", "ok", "exit_code"]
-    assert (body["schema"], body["ok"], body["exit_code"]) == ("course.quiz/1", True, 0)
+def test_the_answer_of_a_script_has_everything(answered):
+    body = answered("which-engine", more="--json").ends(0).json
+    assert body["schema"] == "course.quiz/1"
     assert (body["score"], body["max_score"], body["needed"], body["resumed"]) == (4, 5, 4, False)
     (missed,) = [question for question in body["questions"] if not question["right"]]
     assert missed["id"] == "which-engine"
@@ -290,117 +268,108 @@ def test_the_answer_of_a_script_has_everything(quiz, bank, tmp_path):
 
 def test_the_seed_may_be_given_beside_the_file_but_no_other_than_the_files_own(quiz, bank, tmp_path):
     path = save(tmp_path / "a.toml", key(bank))
-    quiz("take", "--answers", path, "--seed", "8").refuses(2, f"{path}:1: these answers are for seed 7")
+    quiz("take --answers", path, "--seed", "8").refuses(2, f"{path}:1: these answers are for seed 7")
     path = tmp_path / "a.json"
     path.write_text(json.dumps({"answers": key(bank)}), encoding="utf-8")
-    lost = quiz("take", "--answers", str(path))
-    assert (lost.code, "does not say which questions" in lost.err) == (2, True)
-    assert quiz("history", "--json").json["attempts"] == []
-    assert quiz("take", "--answers", str(path), "--seed", str(SEED)).code == 0
+    quiz("take --answers", path).refuses(2, "does not say which questions")
+    assert quiz("history --json").json["attempts"] == []
+    quiz(f"{TAKE} --answers", path).ends(0)
 
 
 @pytest.mark.parametrize(
-    "words",
+    "line",
     [
-        ("take", "--seed", "-1"),
-        ("take", "--seed", "2147483648"),
-        ("take", "--seed", "x"),
-        ("take", "--answers", "none.toml"),
-        ("take", "--answers", "none.toml", "--questions"),
-        ("review", "--seed", "-1"),
+        *(f"take --seed {seed}" for seed in ("-1", "2147483648", "x")), "review --seed -1",
+        "take --answers none.toml", "take --answers none.toml --questions",
     ],
-)
-def test_what_cannot_be_used_is_a_sentence(quiz, words):
-    ran = quiz(*words)
-    assert ran.code == 2
+)  # fmt: skip
+def test_what_cannot_be_used_is_a_sentence(quiz, line):
+    ran = quiz(line).ends(2)
     assert ran.err.strip()
     assert "Traceback" not in ran.err
 
 
 def test_outside_of_a_workspace_or_without_a_quiz_that_is_said(course, workspace, monkeypatch):
-    assert course("quiz", "history", "--json").error == (5, "quiz_not_found")
+    assert course("quiz history --json").error == (5, "quiz_not_found")
     monkeypatch.delenv("COURSE_CONTENT")
     monkeypatch.chdir(workspace.parent)
-    assert course("quiz", "take", "--json").code in {2, 5}
-    assert course("quiz", "history").code == 5
+    assert course("quiz take --json").code in {2, 5}
+    assert course("quiz history").code == 5
 
 
 def test_a_file_may_finish_an_attempt_that_was_begun_and_the_same_seed_counts_once(
-    quiz, bank, types, tmp_path
+    quiz, bank, types, answered
 ):
-    letters = key(bank, ("why-simulate", "digital-twin"))
-    types(letters["why-simulate"])
-    assert quiz("take", "--seed", str(SEED)).code == 130
-    path = save(tmp_path / "a.toml", letters)
-    assert quiz("take", "--answers", path, "--json").json["resumed"] is True
-    assert len(quiz("history", "--json").json["attempts"]) == 1
-    assert quiz("take", "--answers", save(tmp_path / "b.toml", key(bank))).code == 0
-    body = quiz("history", "--json").json
+    wrong = ("why-simulate", "digital-twin")
+    types(key(bank, wrong)["why-simulate"])
+    quiz(TAKE).ends(130)
+    assert answered(*wrong, more="--json").json["resumed"] is True
+    assert len(quiz("history --json").json["attempts"]) == 1
+    answered().ends(0)
+    body = quiz("history --json").json
     assert [(entry["score"], entry["counts"]) for entry in body["attempts"]] == [(3, True), (5, False)]
     assert (body["best"], body["passed"]) == (3, False)
-    assert "does not count" in quiz("history").out
+    quiz("history").says("does not count")
 
 
 # -- review ----------------------------------------------------------------------------------------------
 
 
-def test_nothing_is_there_before_an_attempt_nor_reviewed_before_something_was_missed(quiz, bank, tmp_path):
+def test_nothing_is_there_before_an_attempt_nor_reviewed_before_something_was_missed(quiz, answered):
     quiz("history").ends(0, "No attempt yet.", "Next: course quiz take")
-    assert "take the quiz first" in quiz("review").out
-    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank)))
-    ran = quiz("review", "--json")
+    quiz("review").says("take the quiz first")
+    answered()
+    ran = quiz("review --json")
     assert (ran.code, ran.json["next_due"], ran.json["questions"]) == (0, None, [])
 
 
-def test_what_was_missed_comes_back_every_two_days_until_it_is_known(quiz, bank, tmp_path, types, travel):
-    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("digital-twin",))))
+def test_what_was_missed_comes_back_every_two_days_until_it_is_known(quiz, bank, answered, types, travel):
+    answered("digital-twin")
     start = datetime.now().astimezone().date()
-    early = quiz("review", "--json").json
+    early = quiz("review --json").json
     assert (early["ok"], early["next_due"]) == (True, str(start + timedelta(days=2)))
     for day, rounds in ((2, 1), (4, 2), (6, None)):
         travel(day)
-        asked = quiz("review", "--questions", "--json").json
+        asked = quiz("review --questions --json").json
         assert [question["id"] for question in asked["questions"]] == ["digital-twin"]
         assert asked["mark"] == ""
         letters = key(bank, seed=asked["seed"], only=["digital-twin"])
         types(*letters.values())
-        quiz("review", "--seed", str(asked["seed"])).ends(0, "1 of 1 right.")
-        due = quiz("review", "--json").json["review"]
+        quiz("review --seed", asked["seed"]).ends(0, "1 of 1 right.")
+        due = quiz("review --json").json["review"]
         assert [entry["rounds"] for entry in due] == ([] if rounds is None else [rounds])
-    assert "Nothing is under review" in quiz("review").out
+    quiz("review").says("Nothing is under review")
 
 
-def test_a_review_explains_at_once_and_asks_another_variant(quiz, bank, tmp_path, types, travel):
-    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("digital-twin", "which-engine"))))
+def test_a_review_explains_at_once_and_asks_another_variant(quiz, bank, answered, types, travel):
+    answered("digital-twin", "which-engine")
     travel(2)
-    asked = quiz("review", "--questions", "--json").json
+    asked = quiz("review --questions --json").json
     seed = asked["seed"]
     assert all(bank.variant(q["id"], seed) != bank.variant(q["id"], SEED) for q in asked["questions"])
     letters = key(bank, ("which-engine",), seed=seed, only=["digital-twin", "which-engine"])
     types(*letters.values())
-    ran = quiz("review", "--seed", str(seed)).ends(1, "1 of 2 right.")
+    ran = quiz("review --seed", seed).ends(1, "1 of 2 right.", "due")
     first, second = bank.pose(seed, only=["digital-twin", "which-engine"])
     assert ran.out.index(first.choices[0].explanation) < ran.out.index(second.prompt)
-    assert "due" in ran.out
 
 
-def test_a_review_that_was_stopped_keeps_its_answers(quiz, bank, tmp_path, types, travel):
-    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("digital-twin", "which-engine"))))
+def test_a_review_that_was_stopped_keeps_its_answers(quiz, bank, answered, types, travel):
+    answered("digital-twin", "which-engine")
     travel(2)
     types(*key(bank, seed=1, only=["which-engine"]).values(), "q")
-    assert quiz("review", "--seed", "1").code == 130
-    left = quiz("review", "--questions", "--json").json
+    assert quiz("review --seed 1").code == 130
+    left = quiz("review --questions --json").json
     assert [question["id"] for question in left["questions"]] == ["digital-twin"]
 
 
-def test_a_review_works_without_a_terminal(quiz, bank, tmp_path, travel):
-    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("digital-twin",))))
+def test_a_review_works_without_a_terminal(quiz, bank, answered, tmp_path, travel):
+    answered("digital-twin")
     travel(3)
-    ran = quiz("review")
-    assert (ran.code, "use --answers FILE" in ran.err) == (2, True)
+    quiz("review").refuses(2, "use --answers FILE")
     letters = key(bank, seed=5, only=["digital-twin"])
     path = save(tmp_path / "r.toml", letters, seed=5)
-    body = quiz("review", "--answers", path, "--json").json
+    body = quiz("review --answers", path, "--json").json
     assert (body["schema"], body["ok"], body["seed"]) == ("course.quiz-review/1", True, 5)
     assert [entry["rounds"] for entry in body["review"]] == [1]
     assert body["next_due"] == str(datetime.now().astimezone().date() + timedelta(days=5))
@@ -409,55 +378,44 @@ def test_a_review_works_without_a_terminal(quiz, bank, tmp_path, travel):
 # -- handed in -------------------------------------------------------------------------------------------
 
 
-def test_attempts_travel_in_a_submission_and_are_scored_again(quiz, bank, course, tmp_path):
-    from course.grading.quiz import grade_quiz
-
-    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("which-engine",))))
-    quiz("take", "--questions")
-    course("submit", "-o", str(tmp_path / "mine.zip")).ends(0, "The quiz: 1 attempt, best 4 of 5")
+def test_attempts_travel_in_a_submission_and_are_scored_again(quiz, bank, course, answered, tmp_path):
+    answered("which-engine")
+    quiz("take --questions")
+    course("submit -o", tmp_path / "mine.zip").ends(0, "The quiz: 1 attempt, best 4 of 5")
     with zipfile.ZipFile(tmp_path / "mine.zip") as archive:
         record = json.loads(archive.read("submission.json"))["quiz"]
     verdict = grade_quiz(bank, record)
     assert (verdict.state, verdict.score, verdict.passed) == ("graded", 4.0, True)
-    assert course("submit", "-o", str(tmp_path / "mine.zip"), "--json").json["quiz_attempts"] == 1
+    assert course("submit -o", tmp_path / "mine.zip", "--json").json["quiz_attempts"] == 1
 
 
-def test_plain_output_has_no_frames_and_one_fact_a_line(quiz, bank, tmp_path):
-    ran = quiz("take", "--plain", "--answers", save(tmp_path / "a.toml", key(bank, ("which-engine",))))
-    assert ran.code == 0, "it passed"
-    assert "─" not in ran.out
-    assert "\x1b" not in ran.out
-    assert "2. Which engine is for what, and how to choose: missed\n" in ran.out
+def test_plain_output_has_no_frames_and_one_fact_a_line(answered):
+    ran = answered("which-engine", more="--plain").ends(
+        0, "2. Which engine is for what, and how to choose: missed\n", "1 is under review, due "
+    )
+    assert not {*"─\x1b"} & {*ran.out}
     assert ran.out.count("4 of 5 right") == 1
-    assert "1 is under review, due " in ran.out
 
 
+@pytest.mark.usefixtures("colourless")
 @pytest.mark.parametrize("width", ["60", "120"])
-def test_nothing_is_wider_than_the_terminal(quiz, bank, tmp_path, monkeypatch, width):
+def test_nothing_is_wider_than_the_terminal(quiz, bank, answered, monkeypatch, width):
     monkeypatch.setenv("COLUMNS", width)
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("NO_COLOR", "1")
-    path = save(tmp_path / "a.toml", key(bank, bank.ids))
-    for words in (("take", "--answers", path), ("history",), ("review",), ("take", "--questions")):
-        ran = quiz(*words)
-        shown = re.sub(r"\x1b\[[0-9;]*m", "", ran.out)
-        assert max(len(line) for line in shown.split("\n")) <= int(width)
+    for ran in (answered(*bank.ids), quiz("history"), quiz("review"), quiz("take --questions")):
+        assert max(map(len, ran.rows)) <= int(width)
         assert "\x1b[3" not in ran.out
 
 
-def test_the_quiz_is_part_of_progress_and_of_the_dashboard(quiz, bank, types, course):
+def test_the_quiz_is_part_of_progress_and_of_the_dashboard(quiz, bank, answered, types, course):
     none = {"attempts": 0, "best": None, "total": TOTAL, "passed": False}
-    assert course("progress", "--json").json["quiz"] == none
-    assert "quiz: not taken yet" in course("--plain").out
-    types(*key(bank, ("why-simulate", "digital-twin")).values())
-    quiz("take", "--seed", str(SEED))
-    assert "Quiz: not passed yet, best 3 of 5, 1 attempt" in course("progress", "--plain").out
-    types(*key(bank).values())
-    quiz("take", "--seed", str(SEED))
+    assert course("progress --json").json["quiz"] == none
+    course("--plain").says("quiz: not taken yet")
+    answered("why-simulate", "digital-twin")
+    course("progress --plain").says("Quiz: not passed yet, best 3 of 5, 1 attempt")
+    answered()
     assert course("--json").json["quiz"]["passed"] is False, "the same questions again do not count"
-    later = SEED + 1
-    types(*key(bank, (), later).values())
-    quiz("take", "--seed", str(later))
+    types(*key(bank, seed=8).values())
+    quiz("take --seed 8")
     assert course("--json").json["quiz"] == {"attempts": 2, "best": 5, "total": TOTAL, "passed": True}
 
 

@@ -1,4 +1,4 @@
-"""The program as a whole: its help, its one object, and the one place where errors end."""
+"""The program as a whole: its help, its words, its one object, and the one place where errors end."""
 
 import errno
 import io
@@ -12,7 +12,9 @@ from pathlib import Path
 import pytest
 
 from course.cli.frame import registry
-from course.cli.frame.console import Stream
+from course.cli.frame.console import Stream, filled
+from course.cli.frame.options import global_options
+from course.cli.frame.registry import ALSO, COMMANDS
 from course.cli.setup import doctor
 from course.errors import ContentError
 from tests.command_line import ROOT, as_process
@@ -45,9 +47,7 @@ def test_every_command_has_its_own_summary_and_help_with_an_example(course, name
 def test_the_list_of_commands_names_them_all(course):
     words = course("--help").out
     for one in ("check", "engines compare", "grade run", "author new exercise"):
-        said = course(*one.split(), "--help").out
-        assert "also takes --json, --plain" in said
-        assert f"Example: course {one}" in said
+        course(*one.split(), "--help").says("also takes --json, --plain", f"Example: course {one}")
     for name, entry in registry.COMMANDS.items():
         assert re.search(rf"^\s+{name}\s+{re.escape(entry.summary)}", words, re.MULTILINE)
         assert not entry.is_group or "..\n" not in course(name, "--help").out.replace("]...\n", ""), "uncut"
@@ -71,8 +71,7 @@ def test_a_lesson_opens_without_numpy_and_matplotlib():
 
 @pytest.mark.parametrize("words", [["--version"], ["--version", "--json"], ["check", "--version"]])
 def test_version_wins_wherever_it_stands(course, words):
-    ran = course(*words)
-    assert ran.code == 0
+    ran = course(*words).ends(0)
     assert "course " in ran.out + ran.err
 
 
@@ -158,8 +157,7 @@ def test_a_deliberate_error_is_message_help_and_exit_code(failing):
 )
 def test_anything_else_is_one_line_and_a_report_in_a_file(failing, error, tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    ran = failing(error)("doctor")
-    assert ran.code == 70
+    ran = failing(error)("doctor").ends(70)
     assert ran.err.count("\n") == 1
     assert "Traceback" not in ran.err
     report = Path(re.search(r"details are in (.+)\.$", ran.err.strip())[1])
@@ -171,7 +169,7 @@ def test_a_crash_whose_report_cannot_be_written_is_still_one_line_and_in_the_env
     failing, tmp_path, monkeypatch
 ):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "not there"))
-    ran = failing(ZeroDivisionError())("doctor", "--json")
+    ran = failing(ZeroDivisionError())("doctor --json")
     assert (ran.code, ran.json["error"]["code"], ran.json["schema"]) == (70, "internal", "course.doctor/1")
     assert ran.err.count("\n") == 1
 
@@ -195,7 +193,7 @@ def test_ctrl_c_while_the_program_is_loaded_shows_no_traceback():
 def test_ctrl_c_exits_130_and_is_told_in_one_word(failing):
     ran = failing(KeyboardInterrupt())("doctor")
     assert (ran.code, ran.err) == (130, "Interrupted.\n")
-    assert failing(KeyboardInterrupt())("doctor", "--json").json["error"]["code"] == "interrupted"
+    assert failing(KeyboardInterrupt())("doctor --json").json["error"]["code"] == "interrupted"
 
 
 def test_what_a_library_prints_does_not_join_the_object(course, monkeypatch):
@@ -205,7 +203,7 @@ def test_what_a_library_prints_does_not_join_the_object(course, monkeypatch):
         return 0
 
     monkeypatch.setattr(doctor, "doctor", noisy)
-    ran = course("doctor", "--json")
+    ran = course("doctor --json")
     assert ran.json == {"schema": "course.doctor/1", "ok": True, "exit_code": 0}
     assert "noise" in ran.err
 
@@ -254,8 +252,7 @@ def test_a_file_without_room_is_named(failing):
 
 @pytest.mark.parametrize("number", [errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG, errno.ELOOP])
 def test_what_the_file_system_refuses_is_named_and_no_fault_of_the_course(failing, number):
-    ran = failing(OSError(number, os.strerror(number), "there/it.json"))("doctor")
-    assert ran.code == 4
+    ran = failing(OSError(number, os.strerror(number), "there/it.json"))("doctor").ends(4)
     assert ran.err.startswith(f"there/it.json cannot be used ({os.strerror(number)}).\n")
 
 
@@ -346,3 +343,78 @@ def test_a_help_page_has_its_paragraphs_in_one_piece(name):
     loaded = registry._load(name, registry.COMMANDS[name], "rich")
     for one in (loaded, *getattr(loaded, "commands", {}).values()):
         assert "\n" not in one.help.replace("\n\n", "")
+
+
+@pytest.mark.parametrize(
+    ("word", "own"),
+    [
+        ("test", ["check"]),
+        ("verify", ["check"]),
+        ("run", ["check"]),
+        ("list", ["exercises"]),
+        ("status", []),
+        ("warm-ups", ["warmup"]),
+        ("version", ["--version"]),
+    ],
+)
+def test_a_word_of_another_tool_does_what_it_means(course, workspace, write, word, own):
+    write("RIGHT", "wrong")
+    said, meant = course(word, "--json"), course(*own, "--json")
+    assert said.code == meant.code
+    assert said.json["schema"] == meant.json["schema"]
+    assert not {*ALSO} & {*COMMANDS}
+
+
+def test_a_double_dash_ends_the_search_for_global_options():
+    line = global_options(["check", "--", "--json", "-C"])
+    assert not line.settings.json
+    assert line.rest == ("check", "--", "--json", "-C")
+    assert not line.problem
+
+
+@pytest.mark.parametrize("words", [["-C", "a/b", "check"], ["check", "-Ca/b"], ["-Ca", "check", "-C", "b"]])
+def test_the_folder_may_be_attached_and_two_add_up(words):
+    line = global_options(words)
+    assert line.settings.directory in {"a/b", "a\\b"}
+    assert line.rest == ("check",)
+
+
+def test_help_before_a_command_is_its_help(course):
+    assert course("help check").out == course("check --help").out
+    assert course("help").out == course("--help").out
+
+
+@pytest.mark.parametrize("word", ["quit", "exit"])
+def test_who_wants_to_leave_is_told_that_nothing_runs(course, word):
+    course(word).refuses(2, "every command ends by itself")
+    assert course(word, "--json").error == (2, "usage")
+
+
+def test_a_choice_that_is_missing_is_shown(course, workspace):
+    assert "Known: mjcf, sdf." in course("sandbox export head-on").err
+    course("start").refuses(2, "Known: doubling")
+
+
+def test_help_is_grouped_by_use_and_offers_what_works_here(course, students_content, monkeypatch):
+    course("--help --plain").says("submit").lacks("For instructors:", "For authors:")
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
+    uses = ("Learn", "Practise", "Play", "Hand in", "This machine", "For instructors", "For authors")
+    course("--help --plain").says_in_order(*(f"\n{use}:\n" for use in uses))
+
+    monkeypatch.setenv("COURSE_CONTENT", "nowhere")
+    assert course("--help --plain").code == 0
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "`course grade rerun 'my grades' --against 1`",
+        "pip install 'starlette>=7.5' 'uvicorn<9,>=8' 'websockets'",
+    ],
+)
+def test_a_command_that_is_copied_is_never_broken(command):
+    sentence = f"Grade these again with what the run itself had been graded with: {command}"
+    rows = filled(sentence, 40).split("\n")
+    assert len(rows) > 1
+    assert any(command in row for row in rows)
+    assert all(len(row) <= 40 for row in rows if command not in row)

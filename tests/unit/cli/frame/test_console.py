@@ -2,20 +2,13 @@
 
 import io
 import json
-import re
 
 import pytest
 
 from course.cli.frame.console import Console, Settings, meter
 from course.cli.frame.replies import Bare
 from course.errors import InternalError
-
-
-class Terminal(io.StringIO):
-    encoding = "utf-8"
-
-    def isatty(self):
-        return True
+from tests.unit.cli.conftest import Terminal, uncoloured
 
 
 def _console(*, terminal=True, environ=None, **settings):
@@ -46,12 +39,10 @@ def test_which_shape_a_terminal_gets(environ, settings, fancy):
 
 
 def test_colour_can_be_forced_into_a_pipe_and_forbidden_on_a_terminal():
-    console, out, _ = _console(terminal=False, environ={"FORCE_COLOR": "1"})
-    console.line(("red", "red"))
-    assert "\x1b[31m" in out.getvalue()
-    console, out, _ = _console(environ={"NO_COLOR": "1"})
-    console.line(("red", "red"))
-    assert "\x1b[31m" not in out.getvalue()
+    for terminal, environ in ((False, {"FORCE_COLOR": "1"}), (True, {"NO_COLOR": "1"})):
+        console, out, _ = _console(terminal=terminal, environ=environ)
+        console.line(("red", "red"))
+        assert ("\x1b[31m" in out.getvalue()) is not terminal
 
 
 @pytest.mark.parametrize("columns", [40, 59])
@@ -59,10 +50,8 @@ def test_a_narrow_window_gets_facts_in_place_of_a_table(monkeypatch, columns):
     monkeypatch.setenv("COLUMNS", str(columns))
     console, out, _ = _console(environ={"NO_COLOR": "1"})
     console.table(("Id", "Lesson", "Read"), [("numerical-integration", "How a simulator moves time", "")])
-    assert [line.rstrip() for line in out.getvalue().splitlines()] == [
-        "numerical-integration",
-        "  Lesson How a simulator moves time",
-    ]
+    rows = [line.rstrip() for line in out.getvalue().splitlines()]
+    assert rows == ["numerical-integration", "  Lesson How a simulator moves time"]
 
 
 def test_a_bar_knows_how_much_there_is_when_it_appears(monkeypatch):
@@ -132,8 +121,7 @@ def test_an_address_longer_than_a_line_stays_in_one_piece(monkeypatch, indent):
     console, out, _ = _console(environ={"NO_COLOR": "1"})
     address = f"http://localhost:8888/lab?token={48 * 'a'}"
     console.line("It is at ", (address, "bold"), indent=indent)
-    lines = re.sub(r"\x1b\[[0-9;]*m", "", out.getvalue()).splitlines()
-    assert lines == [" " * indent + f"It is at {address}"]
+    assert uncoloured(out.getvalue()).splitlines() == [" " * indent + f"It is at {address}"]
 
 
 @pytest.mark.parametrize(("typed", "seen"), [("\n\n\n\n", 20), ("\nq\n", 10), ("", 5)])
@@ -208,6 +196,5 @@ def test_a_label_that_leaves_no_room_has_its_text_below_it(monkeypatch):
     monkeypatch.setenv("COLUMNS", "40")
     console, out, _ = _console(environ={"NO_COLOR": "1"})
     console.item("Anna-Lena Schmidt collisions", "nothing was handed in", style="bold")
-    assert [line.strip() for line in re.sub(r"\x1b\[[0-9;]*m", "", out.getvalue()).splitlines()] == [
-        "Anna-Lena Schmidt collisions", "nothing was handed in",
-    ]  # fmt: skip
+    rows = [line.strip() for line in uncoloured(out.getvalue()).splitlines()]
+    assert rows == ["Anna-Lena Schmidt collisions", "nothing was handed in"]

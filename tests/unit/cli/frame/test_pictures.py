@@ -3,6 +3,7 @@
 import base64
 import io
 import re
+from functools import partial
 
 import numpy as np
 import pytest
@@ -18,15 +19,12 @@ from course.figures.terminal import in_cells
 PLOT = Plot(
     title="A line", panels=(Panel("time / s", "height / m", (Series("", [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]),)),)
 )
+make = partial(draw, PLOT)
 
 
 def terminal(**given):
     defaults = {"file": io.StringIO(), "force_terminal": True, "color_system": "truecolor", "width": 60}
     return Console(**defaults | given)
-
-
-def make():
-    return draw(PLOT)
 
 
 def test_kitty_s_and_iterm_s_bytes_are_the_figure():
@@ -54,11 +52,8 @@ def test_sixels_are_the_figure(environ):
     (sent,) = re.findall(r"\x1bP(.*?)\x1b\\", console.file.getvalue(), re.DOTALL)
     decoded = from_sixels(sent)
     assert decoded.shape[1] == 600  # the VT340's ten pixels a letter, since a file has no size
-    figure = (
-        Image.open(io.BytesIO(render(PLOT)))
-        .convert("RGB")
-        .resize(decoded.shape[1::-1], Image.Resampling.LANCZOS)
-    )
+    whole = Image.open(io.BytesIO(render(PLOT))).convert("RGB")
+    figure = whole.resize(decoded.shape[1::-1], Image.Resampling.LANCZOS)
     # 255 colours for the figure's 600 or so, each said in percent: off by 2.55 / 2 alone.
     assert np.abs(decoded - np.asarray(figure)).mean() < 2
     assert np.quantile(np.abs(decoded - np.asarray(figure)), 0.99) < 20
@@ -161,24 +156,22 @@ def coloured(monkeypatch):
 
 
 def test_a_simulation_is_drawn_on_a_terminal_and_only_there(course, coloured, monkeypatch):
-    assert "▀" in course("sim", "run", "projectile").out
+    assert "▀" in course("sim run projectile").out
     for words in (("--plain",), ("--quiet",), ("--json",)):
-        ran = course("sim", "run", "projectile", *words)
+        ran = course("sim run projectile", *words)
         assert "▀" not in ran.out + ran.err
     monkeypatch.setenv("NO_COLOR", "1")
-    assert "▀" not in course("sim", "run", "projectile").out
+    assert "▀" not in course("sim run projectile").out
 
 
 def test_a_report_is_drawn_on_a_terminal_and_described_besides(course, workspace, coloured):
-    assert course("start", "doubling").code in {0, 1}
+    assert course("start doubling").code in {0, 1}
     (workspace / "doubling" / "doubling.py").write_text(
         "import numpy as np\n\n\ndef double(x):\n    return 2 * x\n\n\n"
         "def doublings(x, n):\n    return x * 2.0 ** np.arange(n + 1)\n"
     )
-    shown = course("report", "doubling").out
-    assert "▀" in shown
-    assert "Figure: Five points" in shown
-    assert "▀" not in course("report", "doubling", "--plain").out
+    course("report doubling").says("▀", "Figure: Five points")
+    assert "▀" not in course("report doubling --plain").out
 
 
 @pytest.mark.parametrize(

@@ -11,19 +11,9 @@ import jsonschema
 import msgspec
 import pytest
 
+from course.cli.frame import replies
 from course.cli.frame.console import encode
-from course.cli.frame.replies import (
-    Backup,
-    Bare,
-    Envelope,
-    ErrorBody,
-    ErrorReply,
-    FileReply,
-    NextStep,
-    filled,
-    reply_types,
-    schema_of,
-)
+from course.cli.frame.replies import Backup, Bare, FileReply, reply_types, schema_of
 from course.cli.work.hinting import Hint
 from course.handed_in import attempts
 from course.scoring.judging.session import GradingSession
@@ -48,14 +38,16 @@ def test_a_schema_accepts_its_reply_an_error_and_nothing_else():
     """Not the reply of another command either, even that of a check where a watch ends with one."""
     document = schema_of("course.hint/1")
     given = {"exercise": "a", "given": True, "reason": "", "task": None, "hint": None, "message": ""}
-    reply = msgspec.json.decode(encode(Hint(**given, next=NextStep("b"))))
+    reply = msgspec.json.decode(encode(Hint(**given, next=replies.NextStep("b"))))
     assert not broken(document, reply)
     assert not broken(document, {**reply, "added": 1}), "a field may be added within a version"
     assert broken(document, {key: value for key, value in reply.items() if key != "given"})
     assert broken(document, {**reply, "given": "yes"})
     assert broken(document, {**reply, "schema": "course.check/1"})
     for other in (
-        ErrorReply(schema="course.hint/1", exit_code=2, error=ErrorBody(code="x", message="y")),
+        replies.ErrorReply(
+            schema="course.hint/1", exit_code=2, error=replies.ErrorBody(code="x", message="y")
+        ),
         Bare(schema="course.hint/1", ok=True, exit_code=0),
     ):
         assert not broken(document, msgspec.json.decode(encode(other)))
@@ -66,7 +58,7 @@ def test_a_schema_accepts_its_reply_an_error_and_nothing_else():
 
 
 def test_numbers_that_json_has_not_are_words_and_in_the_schema():
-    class Measured(Envelope, tag="course.measured/1", frozen=True, kw_only=True):
+    class Measured(replies.Envelope, tag="course.measured/1", frozen=True, kw_only=True):
         value: float
         more: tuple = ()
 
@@ -217,13 +209,13 @@ def test_every_reply_of_every_command_keeps_its_schema(course, tmp_path, monkeyp
 
 
 def test_the_command_lists_and_prints(course):
-    listed = course("schema", "--json").json["schemas"]
+    listed = course("schema --json").json["schemas"]
     assert listed == list(reply_types())
-    assert msgspec.json.decode(course("schema", "hint").out) == schema_of("course.hint/1")
-    assert course("schema", "course.hint/1", "--json").json["document"] == schema_of("course.hint/1")
-    assert course("schema", "hin", "--json").error == (5, "schema_not_found")
+    assert msgspec.json.decode(course("schema hint").out) == schema_of("course.hint/1")
+    assert course("schema course.hint/1 --json").json["document"] == schema_of("course.hint/1")
+    assert course("schema hin --json").error == (5, "schema_not_found")
 
 
 def test_a_reply_takes_a_field_from_the_first_object_that_has_it():
     first, second = FileReply("first", "kept"), Backup("second", "copy")
-    assert filled(Backup, first, second) == Backup("first", "copy")
+    assert replies.filled(Backup, first, second) == Backup("first", "copy")

@@ -14,24 +14,21 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.running import batch
 from course.grading.running.folder import export_all, open_results
 from tests.unit.cli.conftest import files_in
+from tests.unit.cli.grade.conftest import RUN, write
 from tests.unit.grading.made import HALF, RIGHT, make_book
 from tests.unit.grading.running.test_interrupted import interrupted_after
 
-RUN = ("run", "class", "--out", "out", "--exercise", "doubling")
 SHEET = "Identifier,Full name,Grade,Last modified (grade)\nParticipant 1,ada,,-\n"
-WRITING = [
-    (*RUN, "--resume"),
-    ("rerun", "out"),
-    ("override", "out", "ada", "doubling", "--score", "1", "--reason", "x"),
-    ("late", "out", "--clear"),
-]
+OVERRIDE = "grade override out ada doubling --score 1 --reason 'oral exam'"
+EXPLAIN = "grade explain out ada doubling"
+WRITING = [f"{RUN} --resume", "grade rerun out", OVERRIDE, "grade late out --clear"]
 READING = [
-    ("rerun", "out", "--dry-run"),
-    ("late", "out"),
-    ("export", "out", "--format", "html", "-o", "elsewhere"),
-    ("export", "out", "--format", "canvas", "-o", "canvas.csv"),
-    ("explain", "out", "ada", "doubling"),
-    ("similar", "out"),
+    "grade rerun out --dry-run",
+    "grade late out",
+    "grade export out --format html -o elsewhere",
+    "grade export out --format canvas -o canvas.csv",
+    EXPLAIN,
+    "grade similar out",
 ]
 
 
@@ -43,15 +40,8 @@ def made(tmp_path_factory):
     make_book(folder / "out", verdicts).close()
     with open_results(folder / "out") as results:
         export_all(folder / "out", results)
-    (folder / "class" / "ada").mkdir(parents=True)
-    (folder / "class" / "ada" / "doubling.py").write_text("def double(x):\n    return 2 * x\n", "utf-8")
+    write(folder, "class/ada/doubling.py")
     return folder
-
-
-@pytest.fixture
-def out(made, tmp_path):
-    shutil.copytree(made, tmp_path, dirs_exist_ok=True)
-    return tmp_path / "out"
 
 
 def newer(path):
@@ -75,38 +65,25 @@ def other(path):
     path.write_bytes(b"something else altogether, and long enough for a page of it " * 100)
 
 
-@pytest.mark.parametrize("words", WRITING + READING, ids=" ".join)
-@pytest.mark.parametrize(
-    ("spoil", "code", "error", "sentence"),
-    [
-        (newer, 4, "newer_format", "newer version"),
-        (overwritten, 7, "integrity", "is damaged"),
-        (cut, 7, "integrity", "is damaged"),
-        (other, 7, "integrity", "is damaged"),
-    ],
-    ids=["newer", "overwritten", "cut", "other"],
-)
-def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(
-    course, out, words, spoil, code, error, sentence
-):
+@pytest.mark.parametrize("line", WRITING + READING)
+@pytest.mark.parametrize("spoil", [newer, overwritten, cut, other])
+def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(course, out, line, spoil):
     spoil(out / "gradebook.sqlite")
     before = files_in(out.parent)
-    ran = course("grade", *words, "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (code, error)
-    assert sentence in ran.json["error"]["message"]
+    ran = course(line, "--json")
+    assert ran.error == ((4, "newer_format") if spoil is newer else (7, "integrity"))
+    assert ("newer version" if spoil is newer else "is damaged") in ran.json["error"]["message"]
     assert ran.json["error"]["help"]
     assert files_in(out.parent) == before
 
 
-@pytest.mark.parametrize(
-    "words", [WRITING[0], WRITING[2], ("explain", "out", "ada", "doubling")], ids=" ".join
-)
-def test_where_only_backups_are_left_every_command_names_salvage(course, out, words):
+@pytest.mark.parametrize("line", [WRITING[0], OVERRIDE, EXPLAIN])
+def test_where_only_backups_are_left_every_command_names_salvage(course, out, line):
     path = out / "gradebook.sqlite"
     shutil.copyfile(path, out / "gradebook.backup-1.sqlite")
     for lose in (lambda: path.write_bytes(b""), path.unlink):
         lose()
-        ran = course("grade", *words)
+        ran = course(line)
         assert "`course grade salvage out --to out-salvaged`" in ran.err.replace("\n", " ")
         assert ran.code in {2, 5, 7}
 
@@ -121,12 +98,12 @@ def impatient(monkeypatch):
 
 
 @pytest.mark.usefixtures("impatient")
-@pytest.mark.parametrize("words", WRITING + READING, ids=" ".join)
-def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(course, out, words):
+@pytest.mark.parametrize("line", WRITING + READING)
+def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(course, out, line):
     with Gradebook(out / "gradebook.sqlite", writing=True) as book:
         book.set_meta(seed="7")
         before = files_in(out / "students")
-        assert course("grade", *words, "--json").error == (2, "gradebook_locked")
+        assert course(line, "--json").error == (2, "gradebook_locked")
         assert files_in(out / "students") == before
         book.set_meta(note="still writing")
     assert not (out.parent / "elsewhere").exists()
@@ -140,13 +117,12 @@ def test_the_gradebook_is_held_until_the_last_page_is_written(course, out, monke
     refused = []
 
     def write_pages(*arguments):
-        refused.append(course("grade", "late", "out", "--clear", "--json").json["error"]["code"])
+        refused.append(course("grade late out --clear --json").json["error"]["code"])
         return whole(*arguments)
 
     whole = pages.write_pages
     monkeypatch.setattr(pages, "write_pages", write_pages)
-    ran = course("grade", "override", "out", "ada", "doubling", "--score", "1", "--reason", "oral exam")
-    assert (ran.code, refused) == (0, ["gradebook_locked"])
+    assert (course(OVERRIDE).code, refused) == (0, ["gradebook_locked"])
     assert "oral exam" in (out / "report.html").read_text("utf-8")
 
 
@@ -157,13 +133,12 @@ def test_pages_that_cannot_be_written_cost_nothing_but_themselves(course, out, m
     before = files_in(out / "students")
     with monkeypatch.context() as patch:
         patch.setattr(pages, "write_pages", write_pages)
-        words = ("override", "out", "ada", "doubling", "--score", "1", "--reason", "oral exam")
-        ran = course("grade", *words, "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (4, "cannot_write")
+        ran = course(OVERRIDE, "--json")
+    assert ran.error == (4, "cannot_write")
     assert "The gradebook is complete" in ran.json["error"]["help"]
     assert files_in(out / "students") == before
-    assert course("grade", "explain", "out", "ada", "doubling", "--json").json["score"] == 1
-    assert course("grade", "late", "out", "--clear").code == 0
+    assert course(EXPLAIN, "--json").json["score"] == 1
+    course("grade late out --clear").ends(0)
     assert "oral exam" in (out / "report.html").read_text("utf-8")
 
 
@@ -172,7 +147,7 @@ def test_an_interrupted_run_ends_its_lines_with_the_reason(course, out, monkeypa
     shutil.copytree(out.parent / "class" / "ada", out.parent / "class" / "bob")
     stopped = interrupted_after(count)
     monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders=1: stopped(entries, terms))
-    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--json")
+    ran = course("grade run class --out new --exercise doubling --json")
     *lines, last = map(json.loads, ran.out.splitlines())
     assert (ran.code, last["exit_code"], last["error"]["code"]) == (130, 130, "interrupted")
     assert [line["student"] for line in lines] == ["ada"] * count
@@ -183,14 +158,10 @@ def test_an_interrupted_run_ends_its_lines_with_the_reason(course, out, monkeypa
 
 
 def test_a_class_with_nothing_to_grade_is_told_of_warm_ups_and_of_resuming(course, tmp_path):
-    (tmp_path / "class" / "ada" / "two-walls").mkdir(parents=True)
-    (tmp_path / "class" / "ada" / "two-walls" / "two_walls.py").write_text("x = 1\n", "utf-8")
-    ran = course("grade", "run", "class", "--out", "out")
-    assert "1 handed in nothing to grade" in ran.out
+    write(tmp_path, "class/ada/two-walls/two_walls.py", "x = 1\n")
+    ran = course("grade run class --out out").says("1 handed in nothing to grade")
     assert "A warm-up is graded where --exercise names it." in ran.out + ran.err
-    said = course("grade", "explain", "out", "ada", "doubling")
-    assert said.code == 5
-    assert "--exercise names it), or the run was interrupted" in said.err
+    course("grade explain out ada doubling").refuses(5, "--exercise names it), or the run was interrupted")
 
 
 #: What is said of a text that is not UTF-8, of a name that may be any bytes, and of one that nobody has.
@@ -223,11 +194,10 @@ NO_TEXT = "x\udcff"
     ],
 )
 def test_words_that_are_no_text_are_named_and_paths_may_be_any_bytes(course, out, words, code):
-    (out.parent / f"{NO_TEXT}.csv").write_text("student\nada\n", "utf-8")
+    write(out.parent, f"{NO_TEXT}.csv", "student\nada\n")
     if words[:2] == ("run", NO_TEXT):
         shutil.copytree(out.parent / "class", out.parent / NO_TEXT)
-    ran = course("grade", *words, "--json")
-    assert ran.code == code, ran.err
+    ran = course("grade", *words, "--json").ends(code)
     for line in ran.out.splitlines():
         json.dumps(json.loads(line), ensure_ascii=False).encode("utf-8")
     if code == REFUSED:
@@ -237,16 +207,17 @@ def test_words_that_are_no_text_are_named_and_paths_may_be_any_bytes(course, out
 @pytest.mark.parametrize("name", [*FORMATS, "gradescope-autograder", "similar"])
 def test_a_folder_is_no_place_for_a_file(course, out, name):
     (out.parent / "folder.html").mkdir()
-    (out.parent / "sheet.csv").write_text(SHEET, "utf-8")
-    (out.parent / "keys.csv").write_text("student,canvas_id,moodle_key\nada,1,ada\n", "utf-8")
-    words = ("similar", "out") if name == "similar" else ("export", "out", "--format", name)
-    if name in {"canvas", "moodle", "moodle-worksheet"}:
-        roster = "sheet.csv" if name == "moodle-worksheet" else "keys.csv"
-        words += ("--exercise", "doubling", "--roster", roster, "--partial")
-        words += ("--assignment", "doubling=1") * (name == "canvas")
-    ran = course("grade", *words, "-o", "folder.html", "--json")
+    write(out.parent, "sheet.csv", SHEET)
+    write(out.parent, "keys.csv", "student,canvas_id,moodle_key\nada,1,ada\n")
+    more = {
+        "canvas": "--exercise doubling --partial --roster keys.csv --assignment doubling=1",
+        "moodle": "--exercise doubling --partial --roster keys.csv",
+        "moodle-worksheet": "--exercise doubling --partial --roster sheet.csv",
+    }
+    line = "similar out" if name == "similar" else f"export out --format {name} {more.get(name, '')}"
+    ran = course(f"grade {line} -o folder.html --json")
     if name in {"gradescope", "html"}:
         assert (ran.code, len(files_in(out.parent / "folder.html")) > 1) == (0, True), ran.err
     else:
-        assert (ran.code, ran.json["error"]["code"]) == (2, "bad_file_name")
+        assert ran.error == (2, "bad_file_name")
         assert ran.json["error"]["message"] == "folder.html is a folder."

@@ -15,6 +15,7 @@ from course.cli.reading.by_line import LineReader
 from course.cli.reading.lesson import paginate, printer, sentences
 from course.reading.parts import read_script
 from course.reading.record import predictions_of
+from tests.unit.cli.conftest import Said
 from tests.unit.cli.reading.conftest import CATALOG
 
 pytestmark = pytest.mark.usefixtures("sandboxes")
@@ -56,6 +57,10 @@ class Typed:
     def said(self):
         return self.out.getvalue()
 
+    def says(self, *words):
+        """In this order."""
+        return Said(self.said).says_in_order(*words)
+
 
 def lines(*typed):
     """These lines, one after the other; at their end the input ends."""
@@ -92,10 +97,8 @@ def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson, workspace):
 def test_a_prediction_comes_before_its_answer_and_is_judged_below_it(workspace):
     typed = Typed(lines(f"g {ASKED}", "b", "", "it grows", "2", "1", "q"))
     assert not typed.read(LESSON, Here.load())
-    said = typed.said
-    assert said.index("Predict first: ") < said.index("Kept.") < said.index("Answer: ")
-    assert said.index("Answer: ") < said.index("You said: it grows") < said.index("Kept: nearly right.")
-    assert "No prediction is answered on this page." in said, "it was judged"
+    typed.says("Predict first: ", "Kept.", "Answer: ", "You said: it grows", "Kept: nearly right.")
+    typed.says("No prediction is answered on this page.")  # it was judged
     (one,) = predictions_of(workspace.store.events())
     assert (one.text, one.judged) == ("it grows", "nearly")
 
@@ -104,24 +107,21 @@ def test_no_way_leads_past_an_open_prediction(workspace):
     typed = Typed(lines("g 999", "g x", f"g {ASKED + 1}", "q"))
     typed.read(LESSON, Here.load())
     assert typed.said.count("g takes the number of a page, 1 to ") == 2
-    assert "Predict first.\n" in typed.said
-    assert "Answer: " not in typed.said
+    typed.says("Predict first.\n").lacks("Answer: ")
     assert typed.asked[-1].startswith("Your prediction")
     after = Typed(lines("course check integrators", "r 1", "q"))
     after.read(LESSON, Here.load())
-    assert f"Going on with page {ASKED} of " in after.said
-    assert "'course check integra' does nothing here, and this is not the shell" in after.said
+    does_nothing = "'course check integra' does nothing here, and this is not the shell"
+    after.says(f"Going on with page {ASKED} of ", does_nothing)
     assert predictions_of(workspace.store.events())[0].text == "r 1", "at a prediction it is one"
 
 
 def test_contents_search_and_an_unknown_word(workspace):
     typed = Typed(lines("t", "/ shadow hamiltonian", "/ compass", "dance", "?", "n", "q"))
     typed.read(LESSON, Here.load())
-    assert ": Fingerprints\n" in typed.said
     assert re.search(r"^Not in this lesson, unless behind one of \d+ open predictions\.$", typed.said, re.M)
-    assert "compass" in typed.said
-    assert "'dance' does nothing here, and this is not the shell; ? lists what does." in typed.said
-    assert "q or Ctrl-C: stop" in typed.said
+    does_nothing = "'dance' does nothing here, and this is not the shell; ? lists what does."
+    typed.says(": Fingerprints\n", "compass", does_nothing, "q or Ctrl-C: stop")
     assert any(question.startswith("Page 2 ") for question in typed.asked), "n goes on"
 
 
@@ -145,8 +145,7 @@ def test_a_cell_runs_is_changed_in_a_file_and_put_back(workspace):
     typed = Typed(answer)
     assert not typed.read(LESSON, Here.load())
     assert typed.said.count("and printed the same.") == 2
-    assert "No cell 999 in this lesson." in typed.said
-    assert "and printed, 1 line:\nmine\nEnd of output\n" in typed.said
+    typed.says("No cell 999 in this lesson.", "and printed, 1 line:\nmine\nEnd of output\n")
     assert typed.said.count(cell.output.splitlines()[0]) == 1
     kinds = [event.data for event in workspace.store.events("cell")]
     assert [data.get("printed") for data in kinds if "ran" in data][1] == "mine"
@@ -232,12 +231,7 @@ def test_the_way_through_an_exercise(tmp_path, monkeypatch, capsys):
     found = {words: repeated(heard(capsys, *words)) for words in steps}
     for wrong in (WRONG, ""):
         path.write_text(right + wrong, "utf-8")
-        for words in (
-            ("check", EXERCISE),
-            ("check", EXERCISE, "--verbose"),
-            ("hint", EXERCISE),
-            ("progress",),
-        ):
+        for words in (*steps[1:3], ("check", EXERCISE, "--verbose"), ("progress",)):
             found[(*words, f"wrong: {bool(wrong)}")] = repeated(heard(capsys, *words))
     # Two objectives may have the same evidence.
     found[()] = [one for one in found[()] if not one.startswith("lessons read: ")]

@@ -1,9 +1,10 @@
 """Warm-ups and exercises in the reader: in their place, started, checked, mended, done without leaving it."""
 
-import signal
+import contextlib
 from dataclasses import replace
 
 import pytest
+from textual.widgets import TextArea
 
 from course.authoring.exercises.grading import solution_path
 from course.catalog import blocks as b
@@ -12,7 +13,8 @@ from course.cli.reading.screen.printing import _said
 from course.cli.reading.screen.running import Drawer
 from course.errors import MissingCapabilityError
 from course.reading.parts import read_script, words_of
-from tests.unit.cli.reading.conftest import CATALOG, drive, screen
+from tests.unit.cli.conftest import Said
+from tests.unit.cli.reading.conftest import CATALOG, at_block, leave, opened, press, screen, until
 
 LESSON, TASK = "numerical-integration", "which-line-first"
 CHECK = {
@@ -21,31 +23,26 @@ CHECK = {
 }  # fmt: skip
 
 
-def doing(workspace, journey, pictures=None):
-    """Open the lesson at its warm-up, do what ``journey`` does, leave."""
-
-    async def there(app, pilot):
+@contextlib.asynccontextmanager
+async def doing(workspace, pictures=None):
+    """The lesson open at its warm-up, and who presses keys."""
+    app = ReaderApp(CATALOG, LESSON, workspace=workspace, pictures=pictures)
+    async with opened(app) as pilot:
         blocks = app.page.progress.script.blocks
         index = next(i for i, one in enumerate(blocks) if isinstance(one, b.Task) and one.id == TASK)
-        app._chosen(f"block:{index}")
-        await pilot.pause()
-        await journey(app, pilot)
-
-    drive(ReaderApp(CATALOG, LESSON, workspace=workspace, pictures=pictures), there)
+        await at_block(app, pilot, index)
+        yield app, pilot
 
 
 def file_of(workspace):
     return workspace.root / "warm-ups" / TASK / "which_line_first.py"
 
 
-async def answered(app, pilot):
-    """Until nothing is being checked."""
-    for _ in range(3000):
-        await pilot.pause(0.02)
-        if not app.page.practice.of(TASK).busy:
-            await pilot.pause(0.1)
-            return
-    pytest.fail("the check never ended")
+async def answered(app, pilot, wait=0.0):
+    """Until nothing is being checked; a file is looked at twice a second."""
+    await pilot.pause(wait)
+    await until(pilot, lambda: not app.page.practice.of(TASK).busy)
+    await pilot.pause(0.1)
 
 
 def test_a_warm_up_stands_at_the_end_of_its_section():
@@ -75,131 +72,93 @@ def test_no_prediction_keeps_a_task_closed():
 
 
 @pytest.mark.parametrize("how", ["escape", "ctrl+q", "SIGTERM", "SIGHUP"])
-def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is_left(mine, how):
-    async def journey(app, pilot):
-        await pilot.press("e")
-        await pilot.pause(0.2)
+async def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is_left(mine, how):
+    async with doing(mine) as (app, pilot):
+        await press(pilot, "e", wait=0.2)
         assert "Ctrl-R: keep, check" in app.screen.query_one(".box").border_subtitle
         await pilot.press("#")
-        if how.startswith("SIG"):
-            signal.raise_signal(getattr(signal, how))
-        else:
-            await pilot.press(how)
-        await pilot.pause(0.2)
-
-    doing(mine, journey)
+        await leave(pilot, how)
     assert file_of(mine).read_text().startswith("#")
 
 
-def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(mine):
+async def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(mine):
     path = file_of(mine)
-
-    async def journey(app, pilot):
-        await pilot.press("e")
-        await pilot.pause(0.2)
+    async with doing(mine) as (_, pilot):
+        await press(pilot, "e", wait=0.2)
         path.write_text("# from another editor\n")
         await pilot.press("ctrl+q")
-
-    doing(mine, journey)
     assert path.read_text() == "# from another editor\n"
 
 
 @pytest.mark.parametrize("typed", ["", "#"])
-def test_what_another_editor_saved_meanwhile_is_not_lost(mine, typed):
+async def test_what_another_editor_saved_meanwhile_is_not_lost(mine, typed):
     path = file_of(mine)
-
-    async def journey(app, pilot):
-        await pilot.press("e")
-        await pilot.pause(0.2)
+    async with doing(mine) as (app, pilot):
+        await press(pilot, "e", wait=0.2)
         path.write_text("# from another editor\n")
-        await pilot.press(*typed, "escape")
-        await pilot.pause(0.2)
+        await press(pilot, *typed, "escape", wait=0.2)
         told = "saved there meanwhile is in .course" if typed else "stays as it is there"
         assert told in app.message
-
-    doing(mine, journey)
     copies = [one.read_text() for one in (mine.root / ".course" / "backups").rglob("*.py")]
     assert (copies == ["# from another editor\n"]) == bool(typed)
     assert ("from another editor" in path.read_text()) == (not typed)
 
 
-def test_what_cannot_be_written_stays_in_the_editor(mine, monkeypatch):
+async def test_what_cannot_be_written_stays_in_the_editor(mine, monkeypatch):
     def refuse(*_):
         raise MissingCapabilityError(
             "The workspace cannot be written.", help="Make room.", code="not_writable"
         )
 
-    async def journey(app, pilot):
-        await pilot.press("e")
-        await pilot.pause(0.2)
+    async with doing(mine) as (app, pilot):
+        await press(pilot, "e", wait=0.2)
         await pilot.press("#")
         monkeypatch.setattr(app.page.practice, "write", refuse)
         for key in ("escape", "ctrl+r", "ctrl+q"):
-            await pilot.press(key)
-            await pilot.pause(0.2)
+            await press(pilot, key, wait=0.2)
             box = app.screen.query_one(".box")
             assert box.border_subtitle == "The workspace cannot be written."
         monkeypatch.undo()
-        await pilot.press("escape")
-        await pilot.pause(0.2)
-
-    doing(mine, journey)
+        await press(pilot, "escape", wait=0.2)
     assert file_of(mine).read_text().startswith("#")
 
 
-def test_what_is_done_is_remembered(mine):
+async def test_what_is_done_is_remembered(mine):
     mine.store.append("check", TASK, {"all_pass": True})
-
-    async def journey(app, pilot):
+    async with doing(mine) as (app, pilot):
         assert "5 minutes, done" in screen(app)
-        await pilot.press("t")
-        await pilot.pause(0.2)
-        await pilot.press("escape", "G")
-        await pilot.pause(0.2)
+        await press(pilot, "t", wait=0.2)
+        await press(pilot, "escape", "G", wait=0.2)
         assert f"{len(CATALOG.warm_ups(LESSON)) - 1} warm-ups are left" in screen(app)
 
-    doing(mine, journey)
 
-
-def test_outside_of_a_workspace_it_says_what_is_needed():
-    async def journey(app, pilot):
+async def test_outside_of_a_workspace_it_says_what_is_needed():
+    async with doing(None) as (app, pilot):
         assert "course init my-course" in screen(app)
-        await pilot.press("r", "e", "enter")
-        await pilot.pause()
+        await press(pilot, "r", "e", "enter")
         assert "Make a workspace first" in screen(app)
 
-    doing(None, journey)
 
-
-def test_its_editor_opens_at_the_function_that_the_finding_is_about(mine):
-    from textual.widgets import TextArea
-
-    at = []
-
-    async def journey(app, pilot):
-        await pilot.press("enter")
-        await pilot.pause()
+async def test_its_editor_opens_at_the_function_that_the_finding_is_about(mine):
+    async with doing(mine) as (app, pilot):
+        await press(pilot, "enter")
         path = file_of(mine)
         path.write_text("# a note\n" * 30 + path.read_text())
-        await pilot.pause(0.6)
-        await answered(app, pilot)
-        await pilot.press("e")
-        await pilot.pause(0.2)
+        await answered(app, pilot, wait=0.6)
+        await press(pilot, "e", wait=0.2)
         area = app.screen.query_one(TextArea)
-        at.append(area.text.splitlines()[area.cursor_location[0]])
-
-    doing(mine, journey)
-    (task,) = CATALOG.exercise(TASK).task
-    assert at[0].startswith(f"def {task.id}(")
+        (task,) = CATALOG.exercise(TASK).task
+        assert area.text.splitlines()[area.cursor_location[0]].startswith(f"def {task.id}(")
 
 
-def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so_when_opened_again(mine):
-    async def journey(app, pilot):
+async def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so_when_opened_again(
+    mine,
+):
+    async with doing(mine) as (app, pilot):
         assert "Which line comes first?" in screen(app)
         await pilot.pause(0.6)  # longer than between two looks at a file, which is not there yet
         assert "Enter puts its file into your workspace" in screen(app)
-        await pilot.press("enter")
-        await pilot.pause()
+        await press(pilot, "enter")
         assert "h hint" not in screen(app)
         await pilot.press("r")
         await answered(app, pilot)
@@ -208,22 +167,15 @@ def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so
         # Saved by an editor of the student's: checked without a key.
         path = file_of(mine)
         path.write_text(path.read_text().replace("return", "return -1.0 *", 1))
-        await pilot.pause(0.6)
-        await answered(app, pilot)
+        await answered(app, pilot, wait=0.6)
         assert "h hint" in screen(app)
         path.write_bytes(solution_path(CATALOG, CATALOG.exercise(TASK)).read_bytes())
-        await pilot.pause(0.6)
-        await answered(app, pilot)
+        await answered(app, pilot, wait=0.6)
         assert f"Fixed: {CATALOG.exercise(TASK).task[0].id}" in screen(app)
         assert "Done: every check passes." in screen(app)
-
-    async def again(app, pilot):
-        await pilot.press(*["down"] * 12)
-        await pilot.pause()
+    async with doing(mine) as (app, pilot):
+        await press(pilot, *["down"] * 12)
         assert "Done: every check passed." in screen(app)
-
-    doing(mine, journey)
-    doing(mine, again)
     passed = [event.data["all_pass"] for event in mine.store.events("check", TASK)]
     assert passed == [False, False, True]
     assert [event.subject for event in mine.store.events("start")] == [TASK]
@@ -235,26 +187,18 @@ def test_what_is_not_written_yet_is_no_error_and_stands_behind_what_fails():
     assert str(next(_said({"checks": [stub, CHECK]}, ""))) == "FAIL: It grows"
 
 
-def test_the_curve_of_a_failed_check_stands_above_its_finding(mine):
+async def test_the_curve_of_a_failed_check_stands_above_its_finding(mine):
     """An exercise's, put where a warm-up is: a reply is a reply."""
     words = {"quantity": "q", "units": "m", "right_is": "RK4", "description": "Your curve leaves it."}
     numbers = {"t": list(range(40)), "yours": [2 * i for i in range(40)], "right": list(range(40))}
     reply = {"ok": False, "checks": [CHECK], "curves": [words | numbers]}
-
-    async def journey(app, pilot):
+    async with doing(mine, pictures=Drawer()) as (app, pilot):
         practice = app.page.practice
         practice.start(TASK)
         practice._standings[TASK] = replace(practice.of(TASK), reply=reply)
         app.page.show_answer(TASK)
-        for _ in range(1500):
-            await pilot.pause(0.02)
-            if "q over time" in screen(app):
-                break
-        shown = screen(app)
-        places = [
-            shown.index(words) for words in ("q over time", "Your curve leaves it.", "Not as it should be.")
-        ]
-        assert places == sorted(places)
-        assert sum("▀" in line for line in shown.splitlines()) >= 8
-
-    doing(mine, journey, pictures=Drawer())
+        await until(pilot, lambda: "q over time" in screen(app))
+        shown = Said(screen(app)).says_in_order(
+            "q over time", "Your curve leaves it.", "Not as it should be."
+        )
+        assert sum("▀" in line for line in shown.rows) >= 8

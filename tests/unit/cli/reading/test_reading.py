@@ -10,8 +10,9 @@ from rich.console import Console
 from course.catalog.models import Lesson
 from course.cli.frame.pictures import protocol_of
 from course.cli.reading.lesson import paginate, printer, sentences, value_spoken, value_text
-from course.errors import NotFoundError
 from course.reading.parts import read_script, words_of
+from tests.unit.cli.conftest import Said
+from tests.unit.cli.reading.conftest import CATALOG
 
 TEXT = """+++
 ignored = true
@@ -48,7 +49,7 @@ x = 1
 ![Two lines that cross at one](figure:integrators-stability)
 They cross.
 
-> **Answer.** Four. Then [more](lesson:other) of it.
+> **Answer.** Four. Then [more](lesson:engines) of it.
 
 ## Second section
 
@@ -79,23 +80,17 @@ $ course check integrators  # looks at your file
 """
 
 
-class StubCatalog:
-    """Knows one other lesson."""
-
-    def lesson(self, name):
-        if name != "other":
-            raise NotFoundError("no such lesson")
-        return name
-
-
-CATALOG = StubCatalog()
-
-
 @pytest.fixture
 def lesson(tmp_path):
     path = tmp_path / "a-lesson.md"
     path.write_text(TEXT, encoding="utf-8")
     return Lesson(1, "a-lesson", "A lesson", 5, "What it is.", ("do this",), (), ("an-exercise",), str(path))
+
+
+def only(lesson, text):
+    """The same lesson, which says nothing else."""
+    Path(lesson.path).write_text(f"+++\n+++\n\n{text}", encoding="utf-8")
+    return lesson
 
 
 def console_of(width=60, **options):
@@ -135,7 +130,7 @@ def test_the_screen_shows_what_is_there_with_a_name_and_a_figure_by_its_caption(
     text = shown(lesson)
     for part in (
         "hω", "4.4 × 10⁸", "z²", 'print("four", 2 + 2)', "four 4", "qₙ₊₁ = qₙ", "A ──▶ B",
-        "$ course check integrators\n      looks at your file", "more (course lesson other)", "1. one",
+        "$ course check integrators\n      looks at your file", "more (course lesson engines)", "1. one",
         "Then practise: course start an-exercise", "┃ Myth\n  ┃ All is well.", "Figure 1. They cross.",
         "To be seen: Two lines that cross at one", "course lesson a-lesson --figures DIR",
     ):  # fmt: skip
@@ -145,10 +140,8 @@ def test_the_screen_shows_what_is_there_with_a_name_and_a_figure_by_its_caption(
 
 @pytest.mark.parametrize("width", range(30, 60))
 def test_a_short_formula_is_never_broken_over_two_lines(lesson, width):
-    Path(lesson.path).write_text(
-        "+++\n+++\n\nThe growth of it all is $1 + z^2$ on each step.", encoding="utf-8"
-    )
-    assert "1 + z²" in shown(lesson, width)
+    text = "The growth of it all is $1 + z^2$ on each step."
+    assert "1 + z²" in shown(only(lesson, text), width)
 
 
 @pytest.mark.parametrize("plain", [False, True])
@@ -163,7 +156,7 @@ def test_figures_are_written_where_asked_and_their_path_is_said(lesson, tmp_path
 def test_a_diagram_and_a_formula_too_wide_for_the_screen_are_said_in_words(lesson):
     """At 40 columns the right half of a diagram was missing, and nothing said so."""
     drawing = "one ──── two ──── three ──── four ──── five"
-    text = f"""+++\n+++\n
+    text = f"""
 ```mermaid
 flowchart LR
     accDescr: One leads to five.
@@ -178,20 +171,15 @@ $$
 q_{{n+1}} = q_n + h v_n + h a_n + h b_n + h c_n + h d_n + h e_n
 $$
 """
-    Path(lesson.path).write_text(text, encoding="utf-8")
-    narrow, wide = (" ".join(shown(lesson, width).split()) for width in (40, 80))
-    assert "Diagram: One leads to five." in narrow
-    assert "───" not in narrow
-    assert drawing in wide
-    assert "accDescr" not in wide
-    assert "plus h a sub n" in narrow
-    assert "plus h a sub n" not in wide
+    narrow, wide = (" ".join(shown(only(lesson, text), width).split()) for width in (40, 80))
+    facts = ("Diagram: One leads to five.", "───", drawing, "accDescr", "plus h a sub n")
+    assert [fact in narrow for fact in facts] == [True, False, False, False, True]
+    assert [fact in wide for fact in facts] == [False, True, True, False, False]
 
 
 def test_a_table_too_wide_for_the_screen_becomes_facts(lesson):
     words = ("extraordinarily", "incomprehensible", "circumstantially")
-    table = f"| {' | '.join(words)} |\n|--|--|--|\n| one | two | three |\n"
-    Path(lesson.path).write_text(f"+++\n+++\n\n{table}", encoding="utf-8")
+    only(lesson, f"| {' | '.join(words)} |\n|--|--|--|\n| one | two | three |\n")
     assert "incomprehensible: two" in shown(lesson, 40)
     assert "incomprehensible: two" not in shown(lesson, 80)
 
@@ -236,14 +224,10 @@ def test_colour_is_left_out_where_it_is_not_wanted(lesson, monkeypatch):
 
 
 def test_without_colour_code_keeps_its_marks(lesson):
-    Path(lesson.path).write_text("+++\n+++\n\nIt takes `steps` steps.", encoding="utf-8")
-    texts = []
-    for no_color in (True, False):
+    for no_color, said in ((True, "It takes `steps` steps."), (False, "It takes steps steps.")):
         console = console_of(60, no_color=no_color)
-        read_whole(lesson, console)
-        texts.append(written(console))
-    assert "It takes `steps` steps." in texts[0]
-    assert "It takes steps steps." in texts[1]
+        read_whole(only(lesson, "It takes `steps` steps."), console)
+        assert said in written(console)
 
 
 def test_a_page_ends_where_a_section_or_a_prediction_does_whose_answer_it_does_not_show(lesson):
@@ -283,19 +267,12 @@ def test_a_picture_is_sent_to_a_terminal_that_shows_it(lesson, monkeypatch):
     monkeypatch.setenv("TERM", "xterm-kitty")
     console = console_of(60, force_terminal=True)
     read_whole(lesson, console)
-    text = written(console)
-    assert "\x1b_Ga=T,f=100" in text
-    assert "To be seen" not in text
-    assert text.index("\x1b_Ga=T") < text.index("They cross.")
+    Said(written(console)).says_in_order("\x1b_Ga=T,f=100", "They cross.").lacks("To be seen")
 
 
 def test_sentences_end_at_full_stops_and_not_at_initials():
-    assert sentences('One by E. Hairer. "Two" at 0.5 s! Three? (Four.)') == [
-        "One by E. Hairer.",
-        '"Two" at 0.5 s!',
-        "Three?",
-        "(Four.)",
-    ]
+    ones = ["One by E. Hairer.", '"Two" at 0.5 s!', "Three?", "(Four.)"]
+    assert sentences(" ".join(ones)) == ones
 
 
 @pytest.mark.parametrize(

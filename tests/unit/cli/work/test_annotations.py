@@ -5,6 +5,7 @@ import json
 import os
 import re
 import shutil
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -67,21 +68,25 @@ def test_whatever_is_said_comes_back(folder, title, message):
     assert parse(line.removesuffix("\n")) == ("warning", {"file": file, "line": "3", "title": title}, message)
 
 
-@pytest.mark.parametrize("where", ["loading", "calling"])
-def test_what_a_file_says_when_it_fails_is_no_command(where, tmp_path):
-    """Run for real: the words of an exception are the student's."""
-    said = 'raise ValueError("a\\n::stop-commands::x\\r\\n::error::y")'
+@pytest.fixture
+def integrators(tmp_path):
+    """The file of an exercise that was started, of the course itself."""
     for words in (["init"], ["start", "integrators"]):
         assert in_process(*words, cwd=tmp_path).returncode == 0
+    return tmp_path / "integrators" / "integrators.py"
+
+
+@pytest.mark.parametrize("where", ["loading", "calling"])
+def test_what_a_file_says_when_it_fails_is_no_command(where, tmp_path, integrators):
+    """Run for real: the words of an exception are the student's."""
+    said = 'raise ValueError("a\\n::stop-commands::x\\r\\n::error::y")'
     text = said if where == "loading" else f"def explicit_euler_step(accel, t, q, v, h):\n    {said}\n"
-    (tmp_path / "integrators" / "integrators.py").write_text(text, "utf-8")
+    integrators.write_text(text, "utf-8")
     environment = {name: value for name, value in os.environ.items() if name != "GITHUB_WORKSPACE"}
     ran = in_process("-C", tmp_path, "check", "integrators", "--format", "github", env=environment)
     lines = [line for line in (ran.stdout + ran.stderr).splitlines() if line.lstrip().startswith("::")]
     found = [parse(line) for line in lines]
-    assert [(name, at["file"]) for name, at, _ in found] == [("error", "integrators/integrators.py")] * len(
-        found
-    )
+    assert {(name, at["file"]) for name, at, _ in found} == {("error", "integrators/integrators.py")}
     assert found[0][1]["line"] == ("1" if where == "loading" else "2")
     assert "::stop-commands::x" in found[0][2], "it is said, inside the message"
 
@@ -90,15 +95,14 @@ def test_a_failed_check_is_an_annotation_at_its_function_from_the_top_of_the_rep
     course, write, workspace, monkeypatch
 ):
     write("RIGHT", "wrong")
-    ran = course("check", "--format", "github")
-    assert ran.code == 1
+    ran = course("check --format github").ends(1)
     ((level, where, message),) = annotations(ran.out)
     assert (level, where["file"], where["line"]) == ("error", "doubling/doubling.py", "5")
     assert "doublings_works" in where["title"]
     assert message.startswith("It is not right.\nWrite RIGHT.\n")
     assert "\x1b" not in ran.out
     monkeypatch.setenv("GITHUB_WORKSPACE", str(workspace.parent))
-    ran = course("check", "--format", "github", "--json")
+    ran = course("check --format github --json")
     assert ran.json["schema"] == "course.check/1", "one object beside them"
     ((_, where, _),) = annotations(ran.err)
     assert where["file"] == "my course é/doubling/doubling.py"
@@ -106,17 +110,15 @@ def test_a_failed_check_is_an_annotation_at_its_function_from_the_top_of_the_rep
 
 def test_everything_right_is_no_annotation_and_an_unknown_format_is_refused(course, write):
     write("RIGHT", "RIGHT")
-    ran = course("check", "--all", "--format", "github")
-    assert ran.code == 0
+    ran = course("check --all --format github").ends(0)
     assert not annotations(ran.out)
-    assert course("check", "--format", "xml").code == 2
+    assert course("check --format xml").code == 2
 
 
 def test_a_file_that_cannot_be_read_is_marked_where_it_cannot(course, write):
     write("UNREADABLE", "RIGHT", extra="def broken(:\n    pass\n")
     for words in (("check",), ("check", "--all")):
-        ran = course(*words, "--format", "github")
-        assert ran.code == 3
+        ran = course(*words, "--format", "github").ends(3)
         ((level, where, message),) = annotations(ran.out)
         assert (level, where["line"], message) == ("error", "7", "Line 1 cannot be read.\nLook at line 1.")
 
@@ -128,24 +130,21 @@ def test_a_line_in_a_notebook_is_that_of_its_text():
     assert line_of(text, SimpleNamespace(task="doublings", traceback=None), traced=False) == 1
 
 
-def test_a_function_that_is_no_python_is_marked_where_python_stops(tmp_path):
-    for words in (["init"], ["start", "integrators"]):
-        assert in_process(*words, cwd=tmp_path).returncode == 0
-    file = tmp_path / "integrators" / "integrators.py"
-    text = file.read_text().replace("    raise NotImplementedError", "    if h > 0\n        return q, v", 1)
-    file.write_text(text)
+def test_a_function_that_is_no_python_is_marked_where_python_stops(tmp_path, integrators):
+    stub = integrators.read_text()
+    text = stub.replace("    raise NotImplementedError", "    if h > 0\n        return q, v", 1)
+    integrators.write_text(text)
     line = 1 + text[: text.index("    if h > 0")].count("\n")
     told = in_process("-C", tmp_path, "check", "integrators", "--format", "lines").stdout
-    assert f"integrators.py:{line}: error: " in told
-    assert f"on line {line} of your file" in told
+    for said in (f"integrators.py:{line}: error: ", f"on line {line} of your file"):
+        assert said in told
 
 
 # -- course init --with ------------------------------------------------------------------------------------
 
 
 def test_init_writes_what_is_asked_for(course, tmp_path):
-    ran = course("init", "mine", "--with", "github,devcontainer,vscode", "--json")
-    assert ran.code == 0
+    ran = course("init mine --with github,devcontainer,vscode --json").ends(0)
     assert ran.json["next"]["command"] == "course go"
     root = tmp_path / "mine"
     assert [file["path"] for file in ran.json["files"]] == [
@@ -161,16 +160,16 @@ def test_init_writes_what_is_asked_for(course, tmp_path):
 
 def test_init_says_that_the_wheel_it_installs_from_is_not_there_yet(course, tmp_path):
     said = "none is there yet: put the one that your instructor handed out there, and commit it"
-    told = [course("init", "mine", "--with", kinds) for kinds in ("github", "devcontainer", "vscode")]
-    assert [said in " ".join(ran.out.split()) for ran in told] == [True, True, False]
+    told = [course("init mine --with", kinds) for kinds in ("github", "devcontainer", "vscode")]
+    assert [said in ran.words for ran in told] == [True, True, False]
     (tmp_path / "mine" / "wheels").mkdir()
     (tmp_path / "mine" / "wheels" / "course-2.0.0-py3-none-any.whl").touch()
-    assert said not in " ".join(course("init", "mine", "--with", "github").out.split())
+    assert said not in course("init mine --with github").words
 
 
 @pytest.mark.parametrize("wanted", ["https://example.org/a b.whl#sha256=1", "it's \"quoted\": $HOME, 'x'"])
 def test_a_requirement_reaches_pip_as_it_is(course, tmp_path, wanted):
-    assert course("init", "mine", "--with", "github,devcontainer", "--requirement", wanted).code == 0
+    assert course("init mine --with github,devcontainer --requirement", wanted).code == 0
     text = (tmp_path / "mine/.github/workflows/course.yml").read_text("utf-8")
     install = yaml.safe_load(text)["jobs"]["check"]["steps"][2]
     assert (install["run"], install["env"]) == ('python -m pip install "$COURSE"', {"COURSE": wanted})
@@ -185,7 +184,7 @@ def test_a_requirement_reaches_pip_as_it_is(course, tmp_path, wanted):
 def test_what_is_no_requirement_or_kind_is_refused_before_anything_is_written(
     course, tmp_path, kinds, wanted
 ):
-    assert course("init", "mine", "--with", kinds, f"--requirement={wanted}").code == 2
+    assert course("init mine --with", kinds, f"--requirement={wanted}").code == 2
     assert not (tmp_path / "mine").exists()
 
 
@@ -193,23 +192,21 @@ def test_nothing_is_replaced_without_a_copy(course, workspace):
     path = workspace / ".vscode" / "tasks.json"
     path.parent.mkdir()
     path.write_text("mine")
-    ran = course("init", "--with", "vscode", "--json")
+    ran = course("init --with vscode --json")
     (file,) = ran.json["files"]
-    with open(file["backup"]["backup"], encoding="utf-8") as kept:  # noqa: PTH123 - a path from a reply
-        assert kept.read() == "mine"
-    again = course("init", "--with", "vscode", "--json").json["files"]
+    assert Path(file["backup"]["backup"]).read_text("utf-8") == "mine"
+    again = course("init --with vscode --json").json["files"]
     assert again[0]["backup"] is None
 
 
 def test_the_editor_s_task_finds_what_the_check_prints(course, write, workspace):
-    course("init", "--with", "vscode")
+    course("init --with vscode")
     task = json.loads((workspace / ".vscode" / "tasks.json").read_text("utf-8"))["tasks"][0]
     write("wrong", "RIGHT")
     assert task["command"] == "course"
     ran = course(*task["args"])
     pattern = task["problemMatcher"]["pattern"]
-    found = [match for line in ran.out.splitlines() if (match := re.match(pattern["regexp"], line))]
-    (match,) = found
+    (match,) = [found for line in ran.rows if (found := re.match(pattern["regexp"], line))]
     drive = re.match(pattern["regexp"], "C:/my course/a.py:12: error: off by 1:2: no")
     assert (drive[pattern["file"]], drive[pattern["line"]]) == ("C:/my course/a.py", "12")
     file, line = match[pattern["file"]], match[pattern["line"]]
@@ -221,8 +218,7 @@ def test_a_checkout_without_the_record_is_checked(course, write, workspace):
     """A repository need not hold .course."""
     write("wrong", "RIGHT")
     shutil.rmtree(workspace / ".course")
-    ran = course("check", "--all", "--format", "github")
-    assert ran.code == 1
+    ran = course("check --all --format github").ends(1)
     assert len(annotations(ran.out)) == 1
 
 

@@ -1,7 +1,6 @@
 """A verdict on the screen."""
 
 import io
-import re
 
 import msgspec
 import pytest
@@ -10,6 +9,7 @@ from course.catalog.models import Exercise, Task
 from course.cli.frame.console import Console, Settings
 from course.cli.work.verdict import show_verdict
 from course.scoring.verdict import CheckResult, Divergence, Status, Tolerance, Verdict
+from tests.unit.cli.conftest import Said
 
 EXERCISE = Exercise(
     format_version=1,
@@ -67,11 +67,11 @@ def _shown(*checks, verbose=False, plain=True, brief=False, **fields):
     show_verdict(
         Console(Settings(), stdout=out, environ=environ), EXERCISE, verdict, verbose=verbose, brief=brief
     )
-    return out.getvalue()
+    return Said(out.getvalue())
 
 
 def test_checks_stand_under_their_task_with_its_points():
-    rows = _shown(_check("a", "euler"), _check("b", "verlet"), _check("c", "euler")).splitlines()
+    rows = _shown(_check("a", "euler"), _check("b", "verlet"), _check("c", "euler")).rows
     assert rows == [
         "Explicit Euler: 4/4 points",
         "  pass: a works",
@@ -86,7 +86,7 @@ def test_checks_stand_under_their_task_with_its_points():
 def test_that_a_check_gives_no_points_here_is_marked_and_said_once():
     title = "The step leaves q alone"
     free = [_check(name, "euler", points=0.0, max_points=0.0, title=title) for name in "bc"]
-    rows = _shown(_check("a", "euler"), *free).splitlines()
+    rows = _shown(_check("a", "euler"), *free).rows
     assert rows[1:5] == [
         "  pass: a works",
         "  pass: The step leaves q alone *",
@@ -112,7 +112,7 @@ def test_a_failure_says_what_was_measured_expected_and_where():
             diagnosis="EULER_IS_SEMI_IMPLICIT",
         )
     )
-    assert words.splitlines()[1:8] == [
+    assert words.rows[1:8] == [
         "  FAIL: a works  [a]",
         "    Energy grows.",
         "    Look at the order.",
@@ -121,12 +121,12 @@ def test_a_failure_says_what_was_measured_expected_and_where():
         "    input: h = 0.05",
         "    differs: q[0], first at step 1, t = 0.05 s",
     ]
-    assert "EULER_IS_SEMI_IMPLICIT" not in words, "a code is for instructors and for --verbose"
+    words.lacks("EULER_IS_SEMI_IMPLICIT")  # a code is for instructors and for --verbose
 
 
 def test_what_passed_and_what_is_not_written_yet_stands_above_what_fails():
     words = _shown(_check("a", "euler", Status.FAIL), _unwritten("b", "verlet"), _check("c", "rk4"))
-    assert words.index("RK4") < words.index("Still to do") < words.index("Explicit Euler")
+    words.says_in_order("RK4", "Still to do", "Explicit Euler")
 
 
 def test_a_brief_verdict_fits_a_small_terminal_and_ends_with_its_finding(monkeypatch):
@@ -142,24 +142,22 @@ def test_a_brief_verdict_fits_a_small_terminal_and_ends_with_its_finding(monkeyp
         plain=False,
     )
     # 24 rows, less what a watch says around it: its rule, the next step, the file and the keys.
-    assert len(words.splitlines()) <= 24 - 5
-    assert words.count("Wrong sign.") == words.count("measured") == words.count("Long lists") == 1
-    places = [words.index(text) for text in ("to do", "a8 works", "a0 works", "Wrong sign.")]
-    assert places == sorted(places)
+    assert len(words.rows) <= 24 - 5
+    assert [words.out.count(once) for once in ("Wrong sign.", "measured", "Long lists")] == [1, 1, 1]
+    words.says_in_order("to do", "a8 works", "a0 works", "Wrong sign.")
 
 
 def test_functions_not_written_yet_are_listed_once():
     words = _shown(
         _unwritten("a", "euler"), _check("b", "verlet"), _unwritten("c", "rk4"), _unwritten("d", "rk4")
     )
-    assert words.count("Write it.") == 1
-    assert words.index("b works") < words.index("to do: Explicit Euler") < words.index("to do: RK4")
-    assert "Still to do: 0/6 points" in words
-    assert "verbose" not in words
+    assert words.out.count("Write it.") == 1
+    words.says_in_order("b works", "to do: Explicit Euler", "to do: RK4")
+    words.says("Still to do: 0/6 points").lacks("verbose")
     two = _unwritten("c", "rk4"), _unwritten("d", "rk4")
     mended = [msgspec.structs.replace(one, help="Mend it.") for one in two]
     words = _shown(_unwritten("a", "euler"), _unwritten("b", "verlet"), _unwritten("e", "verlet"), *mended)
-    assert words.count("rk4: Mend it.\n") == 1, "advice that is not everybody's says whose it is"
+    assert words.out.count("rk4: Mend it.\n") == 1, "advice that is not everybody's says whose it is"
 
 
 FAILS = _check("a", "euler", Status.FAIL, message="No.")
@@ -203,26 +201,22 @@ ABSENT = {"message": "No such function.", "help": "Define it.", "diagnosis": "MI
     ],
 )  # fmt: skip
 def test_each_fact_is_said_once_and_none_vanishes(checks, counts):
-    words = _shown(*checks, warnings=("careful",))
+    words = _shown(*checks, warnings=("careful",)).says("Note: careful").out
     assert {text: words.count(text) for text in counts} == counts
-    assert "Note: careful" in words
 
 
 def test_tracebacks_are_shown_on_request_and_offered_otherwise():
     check = _check(
         "a", "euler", Status.ERROR, message="It raised.", traceback="line 3 in euler", stdout="hello"
     )
-    assert "line 3" not in _shown(check)
-    assert _shown(check).count("--verbose") == 1
-    shown = _shown(check, verbose=True)
-    assert "line 3 in euler" in shown
-    assert "hello" in shown
+    assert _shown(check).lacks("line 3").out.count("--verbose") == 1
+    _shown(check, verbose=True).says("line 3 in euler", "hello")
 
 
 def test_every_status_is_a_word_of_its_own():
     for status in Status:
         word = status if status in {"pass", "skip"} else status.upper()
-        assert f"{word}: a works" in _shown(_check("a", "euler", status, message="m"), _check("b", "euler"))
+        _shown(_check("a", "euler", status, message="m"), _check("b", "euler")).says(f"{word}: a works")
 
 
 @pytest.mark.parametrize("columns", [60, 120])
@@ -241,16 +235,13 @@ def test_lines_fit_the_terminal(monkeypatch, columns):
         _unwritten("b", "rk4"),
         plain=False,
     )
-    assert max(len(re.sub(r"\x1b\[[0-9;]*m", "", row)) for row in words.splitlines()) <= columns
+    assert max(map(len, words.rows)) <= columns
 
 
 def test_a_brief_verdict_has_the_details_of_one_function_and_says_so():
     first = _check("a", "euler", Status.FAIL, message="First.", help="Help one.")
     second = _check("b", "verlet", Status.FAIL, message="Second.", help="Help two.")
-    words = _shown(first, second, brief=True)
-    assert "Help one." in words
-    assert words.index("FAIL: Velocity Verlet  [verlet]") < words.index("FAIL: a works")
-    assert "Second." not in words
-    assert "course check" in words
-    assert "Help two." in _shown(first, second)
-    assert "course check" not in _shown(first, _check("b", "verlet"), brief=True)
+    words = _shown(first, second, brief=True).says("Help one.", "course check").lacks("Second.")
+    words.says_in_order("FAIL: Velocity Verlet  [verlet]", "FAIL: a works")
+    _shown(first, second).says("Help two.")
+    _shown(first, _check("b", "verlet"), brief=True).lacks("course check")

@@ -1,40 +1,27 @@
 """A verdict after every save, however the editor saves."""
 
 import contextlib
-import io
 import os
 import re
 import threading
 import time
 import tty
+from types import SimpleNamespace
 
 import pytest
 
 from course.cli import loop
-from course.cli.frame.console import Console, Settings
+from course.cli.frame.console import Console
 from course.cli.frame.here import Here
-from course.cli.loop import Watcher, saves
+from course.cli.loop import saves
 from course.errors import CourseError, NotFoundError
-from course.handed_in import attempts
-
-
-@pytest.fixture
-def watching(course, workspace, write):
-    """A watcher of ``doubling`` and its session, warm."""
-    here = Here.load()
-    exercise = here.exercise("doubling")
-    watcher = Watcher(
-        console=Console(Settings(), stdout=io.StringIO(), stderr=io.StringIO()), here=here, exercise=exercise
-    )
-    return watcher, attempts.open_session(exercise, here.catalog)
 
 
 def _said(watcher):
     return watcher.console._out.getvalue()
 
 
-def test_each_save_is_graded_once_and_a_file_that_cannot_run_is_reported(watching, write):
-    watcher, session = watching
+def test_each_save_is_graded_once_and_a_file_that_cannot_run_is_reported(watcher, session, write):
     write("wrong", "RIGHT")
     assert watcher.look(session)
     assert not watcher.look(session)
@@ -48,8 +35,7 @@ def test_each_save_is_graded_once_and_a_file_that_cannot_run_is_reported(watchin
     assert watcher.last.ok
 
 
-def test_a_file_put_in_the_place_of_the_old_one_is_a_save(watching, write, workspace):
-    watcher, session = watching
+def test_a_file_put_in_the_place_of_the_old_one_is_a_save(watcher, session, write, workspace):
     path = write("wrong", "wrong")
     watcher.look(session)
     before = path.stat()
@@ -61,10 +47,9 @@ def test_a_file_put_in_the_place_of_the_old_one_is_a_save(watching, write, works
     assert watcher.last.ok
 
 
-def test_a_file_that_goes_is_waited_for_but_there_must_be_one_to_begin_with(watching, write, course):
-    watcher, session = watching
+def test_a_file_that_goes_is_waited_for_but_there_must_be_one_to_begin_with(watcher, session, write, course):
     write("RIGHT", "RIGHT").unlink()
-    assert course("watch", "doubling").code == 3
+    assert course("watch doubling").code == 3
     assert not watcher.look(session)
     assert not watcher.look(session)
     assert _said(watcher).count("is gone") == 1
@@ -72,8 +57,7 @@ def test_a_file_that_goes_is_waited_for_but_there_must_be_one_to_begin_with(watc
     assert watcher.look(session)
 
 
-def test_a_file_that_is_written_in_two_goes_is_graded_whole(watching, write, workspace):
-    watcher, session = watching
+def test_a_file_that_is_written_in_two_goes_is_graded_whole(watcher, session, write, workspace):
     path = workspace / "doubling" / "doubling.py"
     whole = write("RIGHT", "RIGHT").read_bytes()
     path.write_bytes(b"")
@@ -85,8 +69,7 @@ def test_a_file_that_is_written_in_two_goes_is_graded_whole(watching, write, wor
     assert len(watcher.runs) == 1
 
 
-def test_a_fault_of_the_grader_ends_the_watch(watching, write):
-    watcher, session = watching
+def test_a_fault_of_the_grader_ends_the_watch(watcher, session, write):
     write(extra="FAULT")
     with pytest.raises(CourseError):
         watcher.look(session)
@@ -127,24 +110,6 @@ def test_saves_are_noticed_quickly(tmp_path, how):
     noticed.close()
 
 
-def test_ctrl_c_ends_a_watch_with_its_one_object(course, workspace, write, monkeypatch):
-    write("wrong", "RIGHT")
-
-    def two_saves(paths, keys):
-        yield ""
-        paths[0].write_text(paths[0].read_text().replace("wrong", "RIGHT"))
-        yield ""
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(loop, "saves", two_saves)
-    ran = course("watch", "doubling", "--json")
-    assert ran.code == 130
-    body = ran.json
-    assert (body["schema"], body["exit_code"], body["exercise"]) == ("course.watch/1", 130, "doubling")
-    assert [(run["exercise"], run["score"]) for run in body["runs"]] == [("doubling", 2.0), ("doubling", 4.0)]
-    assert body["last"]["schema"] == "course.check/1"
-
-
 @pytest.fixture
 def pressed(monkeypatch):
     """What happens in a loop, in this order: a key, or a call that is a save; at the end Ctrl-C."""
@@ -161,15 +126,11 @@ def pressed(monkeypatch):
             raise KeyboardInterrupt
 
         monkeypatch.setattr(loop, "saves", saves)
-        monkeypatch.setattr(loop, "_keys", lambda console: contextlib.nullcontext(Quiet()))
+        monkeypatch.setattr(
+            loop, "_keys", lambda console: contextlib.nullcontext(SimpleNamespace(leave=False))
+        )
 
     return script
-
-
-class Quiet:
-    """A keyboard that nobody touches while checks run."""
-
-    leave = False
 
 
 def _solve(name):
@@ -184,13 +145,21 @@ def _exercise(name):
     return Here.load().catalog.exercise(name)
 
 
+def test_ctrl_c_ends_a_watch_with_its_one_object(course, write, pressed):
+    write("wrong", "RIGHT")
+    pressed(lambda: write("RIGHT", "RIGHT"))
+    body = course("watch doubling --json").ends(130).json
+    assert (body["schema"], body["exercise"]) == ("course.watch/1", "doubling")
+    assert [(run["exercise"], run["score"]) for run in body["runs"]] == [("doubling", 2.0), ("doubling", 4.0)]
+    assert body["last"]["schema"] == "course.check/1"
+
+
 def test_each_verdict_and_each_answer_to_a_key_ends_with_the_keys_and_the_file(
     course, workspace, write, pressed
 ):
     write("wrong", "RIGHT")
     pressed("v", "x", "\n", "q", "r")
-    ran = course("watch", "doubling")
-    assert ran.code == 0
+    ran = course("watch doubling").ends(0)
     waiting = "Waiting for a save of doubling/doubling.py.\nKeys: h hint, v more, l lesson, t text, q leave\n"
     assert ran.out.count(waiting) == 2
     assert ran.out.endswith(waiting)
@@ -199,48 +168,38 @@ def test_each_verdict_and_each_answer_to_a_key_ends_with_the_keys_and_the_file(
 @pytest.mark.parametrize("words", [("go",), ("watch",)])
 def test_the_next_task_opens_by_itself_when_one_passes(course, workspace, pressed, words):
     pressed(_solve("doubling"), _solve("halving"))
-    ran = course(*words)
-    said = ran.out
-    assert said.index("Exercise 1 of 2: doubling") < said.index("All 2 public checks pass")
-    assert said.index("All 2 public checks pass") < said.index("Exercise 2 of 2: halving")
-    assert "Explained in: course lesson half-as-much" in said
-    assert said.endswith("Next: course submit  everything is done: hand it in\n")
+    ran = course(*words).ends(0, "Explained in: course lesson half-as-much")
+    ran.says_in_order("Exercise 1 of 2: doubling", "All 2 public checks pass", "Exercise 2 of 2: halving")
+    assert ran.out.endswith("Next: course submit  everything is done: hand it in\n")
     assert (workspace / "halving" / "halving.py").is_file(), "it was put there"
-    assert ran.code == 0
 
 
 def test_what_is_in_the_files_already_counts(course, workspace, write, pressed):
     write("RIGHT", "RIGHT")
     pressed("q")
-    said = course("go").out
-    assert said.index("All 2 public checks pass") < said.index("Exercise 2 of 2: halving")
-    assert "Write RIGHT" not in said, "a file as it was handed out waits for its first save"
+    said = course("go").says_in_order("All 2 public checks pass", "Exercise 2 of 2: halving")
+    said.lacks("Write RIGHT")  # a file as it was handed out waits for its first save
 
 
 def test_a_task_as_it_was_handed_out_is_checked_on_r_and_skipped_it_is_where_the_next_go_is_not(
     course, workspace, pressed
 ):
     pressed("r", "s", "q")
-    said = course("go").out
+    said = course("go").says("Exercise 2 of 2").out
     assert said.count("Keys: r check, l lesson, t text, s skip, q leave") == 1
     assert said.count("Keys: v more, l lesson, t text, s skip, q leave") == 1
-    assert "Exercise 2 of 2" in said
     pressed("q")
-    assert "Exercise 1 of 2" not in course("go").out
-    assert "Exercise 1 of 2" in course("watch", "-C", "doubling").out, "a folder keeps to its task first"
+    course("go").lacks("Exercise 1 of 2")
+    course("watch -C doubling").says("Exercise 1 of 2")  # a folder keeps to its task first
 
 
 def test_keys_lead_to_other_tasks_and_back_and_a_task_that_is_done_stays(course, workspace, write, pressed):
     write("RIGHT", "RIGHT")
-    course("check", "doubling")
+    course("check doubling")
     pressed("b", "s", "q")
-    said = course("go").out
-    assert [line for line in said.splitlines() if line.startswith("Exercise ")] == [
-        "Exercise 2 of 2: halving",
-        "Exercise 1 of 2: doubling",
-        "Exercise 2 of 2: halving",
-    ]
-    assert "b back, s skip" in said
+    ran = course("go").says("b back, s skip")
+    here, there = "Exercise 2 of 2: halving", "Exercise 1 of 2: doubling"
+    assert [line for line in ran.rows if line.startswith("Exercise ")] == [here, there, here]
 
 
 def test_the_lesson_the_text_and_the_way_back_are_keys(course, workspace, pressed, monkeypatch):
@@ -254,32 +213,30 @@ def test_the_lesson_the_text_and_the_way_back_are_keys(course, workspace, presse
 
     monkeypatch.setattr(loop, "again", opened)
     pressed("l", "t", "l", "q")
-    said = course("go")
+    said = course("go").says("# Doubling")  # the whole text
     assert ran == [["lesson", "twice-as-much", "--page"]] * 2
     assert said.out.count("Waiting for a save of doubling/doubling.py.") == 4
-    assert "# Doubling" in said.out, "the whole text"
     assert (said.code, said.err) == (0, "There is no such lesson.\n"), "and the loop goes on"
 
 
 def test_with_no_task_left_nothing_is_handed_in_unasked(course, workspace, pressed, write):
     write("RIGHT", "RIGHT")
-    course("check", "doubling")
-    course("start", "halving")
+    course("check doubling")
+    course("start halving")
     pressed(_solve("halving"))
-    course("watch", "halving")
-    course("check", "halving")
+    course("watch halving")
+    course("check halving")
     for words in (("go",), ("watch",)):
         assert course(*words).out == "Next: course submit  everything is done: hand it in\n"
-    assert course("watch", "--json").json["exercise"] == ""
+    assert course("watch --json").json["exercise"] == ""
     assert not list(workspace.glob("*.zip"))
 
 
-def test_after_the_last_task_each_further_step_is_asked_about(course, workspace, monkeypatch):
+def test_after_the_last_task_each_further_step_is_asked_about(course, workspace, person, monkeypatch):
     ran, asked, steps = [], [], iter(["course quiz take", "course submit", "course submit"])
     monkeypatch.setattr(loop, "next_task", lambda *_: None)
     monkeypatch.setattr(loop, "next_in_course", lambda *_: next(steps))
     monkeypatch.setattr(loop, "again", lambda words: ran.append((words, loop.current().led)) or 0)
-    monkeypatch.setattr(Console, "interactive", property(lambda _: True))
     monkeypatch.setattr(Console, "go_on", lambda _, where: not asked.append(where))
     said = course("go").out
     assert ran == [(["quiz", "take"], True), (["submit"], True)], "what is next is said once, by the loop"
@@ -293,17 +250,14 @@ def test_a_named_watch_stays_with_its_exercise_and_works_where_the_record_cannot
     kept = record.read_bytes()
     record.write_bytes(b"not a database, not at all, no" * 10)
     pressed("q")
-    assert course("watch", "doubling").code == 0
+    assert course("watch doubling").code == 0
     assert course("go").code != 0
     record.write_bytes(kept)
     pressed(_solve("doubling"), "s", "b", "q")
-    said = course("watch", "doubling").out
-    assert "All 2 public checks pass" in said
-    assert "halving" not in said
+    course("watch doubling").says("All 2 public checks pass").lacks("halving")
 
 
-def test_q_while_checks_run_drops_them_and_records_nothing(watching, write):
-    watcher, session = watching
+def test_q_while_checks_run_drops_them_and_records_nothing(watcher, session, write):
     write("wrong", "RIGHT")
     dropped, grade = threading.Event(), session.grade
 
@@ -312,7 +266,7 @@ def test_q_while_checks_run_drops_them_and_records_nothing(watching, write):
         return grade(submission, only)
 
     session.drop, session.running, session.grade = dropped.set, "a check", slow
-    watcher.pressed = type("Leaving", (), {"leave": True})()
+    watcher.pressed = SimpleNamespace(leave=True)
     assert watcher.look(session)
     assert watcher.runs == []
     assert not watcher.here.history(watcher.exercise).runs
@@ -335,8 +289,9 @@ def test_keys_are_taken_one_by_one_and_what_follows_q_stays_for_the_shell():
         os.close(terminal)
 
 
-def test_what_broke_and_what_was_fixed_comes_first_but_not_what_was_not_written_before(watching, write):
-    watcher, session = watching
+def test_what_broke_and_what_was_fixed_comes_first_but_not_what_was_not_written_before(
+    watcher, session, write
+):
 
     def shown(*bodies):
         before = len(_said(watcher))
@@ -351,8 +306,7 @@ def test_what_broke_and_what_was_fixed_comes_first_but_not_what_was_not_written_
     assert "fixed" in lines[2]
 
 
-def test_a_newer_save_drops_the_run_and_is_checked_instead(watching, write, monkeypatch):
-    watcher, session = watching
+def test_a_newer_save_drops_the_run_and_is_checked_instead(watcher, session, write, monkeypatch):
     write("wrong", "RIGHT")
     dropped = threading.Event()
     grade = session.grade
@@ -370,8 +324,7 @@ def test_a_newer_save_drops_the_run_and_is_checked_instead(watching, write, monk
     assert "dropped" in _said(watcher)
 
 
-def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, write):
-    watcher, session = watching
+def test_keys_give_a_hint_the_next_function_details_and_another_run(watcher, session, write):
     write("wrong", "wrong")
     watcher.look(session)
     watcher.press("h", session)
@@ -385,14 +338,13 @@ def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, wr
     watcher.press("r", session)
     assert len(watcher.runs) == 2
     assert watcher.press("r", session)
-    said = len(_said(watcher))
+    said = _said(watcher)
     assert not watcher.press("x", session)
     assert not watcher.press("\n", session)
-    assert len(_said(watcher)) == said
+    assert _said(watcher) == said
 
 
-def test_beside_keys_no_command_is_named_for_what_is_kept_back(watching, write):
-    watcher, session = watching
+def test_beside_keys_no_command_is_named_for_what_is_kept_back(watcher, session, write):
     write("wrong", "also wrong")
     watcher.look(session)
     kept_back = "One function at a time in detail"
@@ -406,8 +358,9 @@ def test_beside_keys_no_command_is_named_for_what_is_kept_back(watching, write):
     assert "n next failing" in watcher.keys
 
 
-def test_keys_name_a_hint_once_one_is_due_and_another_function_once_another_one_fails(watching, write):
-    watcher, session = watching
+def test_keys_name_a_hint_once_one_is_due_and_another_function_once_another_one_fails(
+    watcher, session, write
+):
     watcher.look(session)
     assert watcher.keys == ["v more"]
     write("wrong", "raise NotImplementedError")

@@ -240,7 +240,7 @@ def _check_formulas(document: Document[Scene]) -> None:
                 document.fail(where, f"{error.message.rstrip('.')}{there}.", fix=error.help)
             if time is not None and not 0.0 <= time <= scene.duration:
                 problem = f"that is {time:g} s, which no run sees."
-                document.fail(where, problem, fix="Make it 0 to `duration`, or that longer.")
+                document.fail(where, problem, fix="Make it 0 to `duration`, or make `duration` longer.")
 
 
 def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:
